@@ -201,6 +201,12 @@ impl Exchange {
         model.is_none_or(|model| self.models.is_empty() || self.models.contains(&model))
     }
 
+    /// Tests whether each device model has the message.
+    #[inline(always)]
+    pub(crate) const fn is_of_each(&self) -> bool {
+        self.models.is_empty()
+    }
+
     /// Tests the values of a request against the limits of a device model. Generated code calls it.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Layouts: the structs that messages decode to.
 
-use crate::{AnySignal, Data, Error, Frame, Payload};
+use crate::payload::Refusing;
+use crate::{AnySignal, Data, Frame, Payload};
 
 /// The values that a kind of frame carries.
 pub trait Layout: Sized + 'static {
@@ -8,9 +9,6 @@ pub trait Layout: Sized + 'static {
     const SIGNALS: AnySignals;
     /// Reads the values from the data of such a frame.
     const DECODE: Decode<Self>;
-    /// Writes the values to the data.
-    const ENCODE: Encode<Self>;
-
     /// The numbers of data bytes that such a frame can have, if there are several.
     const LENGTHS: &'static [u8] = &[];
 
@@ -38,10 +36,7 @@ pub trait Layout: Sized + 'static {
     ///
     /// Refuses values that the signals cannot hold. If `payload` keeps to limits, it also refuses
     /// values outside them.
-    #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ENCODE(self, payload)
-    }
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E>;
 }
 
 /// The type of [`Layout::SIGNALS`].
@@ -50,14 +45,15 @@ pub type AnySignals = &'static [&'static dyn AnySignal];
 /// The same as [`Layout::decode`].
 pub type Decode<T> = fn(&Data) -> T;
 
-/// The same as [`Layout::encode`].
-pub type Encode<T> = fn(&T, &mut Payload) -> Result<(), Error>;
-
 /// Frames without signals.
 impl Layout for () {
     const SIGNALS: AnySignals = &[];
     const DECODE: Decode<Self> = |_| ();
-    const ENCODE: Encode<Self> = |(), _| Ok(());
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+        Ok(())
+    }
 }
 
 /// Something to do with the values of any message.

@@ -11,10 +11,11 @@ pub use serde;
 pub use crate::address::{Address, Pattern, Who};
 pub use crate::filter::IdFilter;
 pub use crate::incoming::Incoming;
-pub use crate::layout::{AnySignals, Decode, Encode, Signals, Task};
+pub use crate::layout::{AnySignals, Decode, Signals, Task};
 pub use crate::long::parts::Said;
 pub use crate::long::{ByteRun, LongPayload};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
+pub use crate::payload::Refusing;
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
 pub use crate::protocol::Headed;
@@ -30,8 +31,8 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, AnySignals, Continuation, Decode, Encode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload,
-        Pattern, Piece, Said, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
+        Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern,
+        Piece, Refusing, Said, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
         right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};

@@ -5,6 +5,7 @@ use core::mem::discriminant;
 use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
 use crate::layout::{Signals, Task};
+use crate::payload::Refusing;
 use crate::plumbing::Way;
 use crate::protocol::{is_own, own_id};
 use crate::reply::{has_error, selected};
@@ -235,13 +236,43 @@ impl<P: Protocol> Received<P> {
     /// - addresses that the document does not name.
     #[inline]
     pub fn encode(&self) -> Result<Frame, Error> {
-        let (data, length) = self.content.run(Writing(self))?;
-        let length = P::LENGTH.or(length).unwrap_or(self.exchange.data_length());
-        let frame = self.frame.with(data, length);
+        let plain = if self.is_plain() { self.written(Payload::without_reasons).ok() } else { None };
+        let (data, length) = match plain {
+            Some(written) => written,
+            None => self.checked()?,
+        };
+        Ok(self.frame.with(data, P::LENGTH.or(length).unwrap_or(self.exchange.data_length())))
+    }
+
+    /// Tests whether only the values can be refused.
+    #[inline(always)]
+    fn is_plain(&self) -> bool {
+        if self.is_other {
+            return false;
+        }
+        if !self.is_to_module() {
+            return true;
+        }
+        let is_offered = self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id()));
+        is_offered && (self.model.is_none() || self.exchange.is_of_each())
+    }
+
+    /// Writes the values with all tests.
+    #[cold]
+    #[inline(never)]
+    fn checked(&self) -> Result<(Data, Option<u8>), Error> {
+        let (data, length) = self.written(|payload| payload)?;
+        let frame = self.frame.with(data, P::LENGTH.or(length).unwrap_or(self.exchange.data_length()));
         if self.is_other {
             self.check_recognised(frame)?;
         }
-        self.check_request().map(|()| frame)
+        self.check_request().map(|()| (data, length))
+    }
+
+    /// Writes the values over the received data.
+    #[inline(always)]
+    fn written<E: Refusing>(&self, of: impl Fn(Payload) -> Payload<E>) -> Result<(Data, Option<u8>), E> {
+        self.content.run(Writing { received: self, of })
     }
 
     /// Refuses a frame that would not be recognised as what it was made from.
@@ -273,7 +304,6 @@ impl<P: Protocol> Received<P> {
 
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
     /// that the device model does not have.
-    #[inline(always)]
     fn check_request(&self) -> Result<(), Error> {
         if !self.is_to_module() {
             return Ok(());
@@ -281,16 +311,10 @@ impl<P: Protocol> Received<P> {
         if !self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id())) {
             self.check_addressing()?;
         }
-        if self.model.is_some() { self.check_model() } else { Ok(()) }
-    }
-
-    #[inline(never)]
-    fn check_model(&self) -> Result<(), Error> {
         let is_of_model = self.exchange.is_of(self.model);
         if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
     }
 
-    #[cold]
     fn check_addressing(&self) -> Result<(), Error> {
         match self.addressing() {
             Some(addressing) if addressing.is_offered() => addressing.documented(self.frame.raw_id()),
@@ -322,15 +346,18 @@ impl<P: Addressed> Received<P> {
 /// can have several.
 ///
 /// Each message has a payload of its own, so none has to be in memory.
-struct Writing<'a, P: Protocol>(&'a Received<P>);
+struct Writing<'a, P: Protocol, F> {
+    received: &'a Received<P>,
+    of: F,
+}
 
-impl<P: Protocol> Task for Writing<'_, P> {
-    type Output = Result<(Data, Option<u8>), Error>;
+impl<P: Protocol, E: Refusing, F: Fn(Payload) -> Payload<E>> Task for Writing<'_, P, F> {
+    type Output = Result<(Data, Option<u8>), E>;
 
     #[inline(always)]
     fn run<L: Layout>(self, values: &L) -> Self::Output {
-        let Self(received) = self;
-        let mut payload = received.payload();
+        let Self { received, of } = self;
+        let mut payload = of(received.payload());
         values.encode(&mut payload)?;
         Ok((*payload.data(), payload.length()))
     }

@@ -9,6 +9,7 @@ mod tests;
 
 use core::marker::PhantomData;
 
+use crate::payload::Refusing;
 use crate::physical::Physical;
 use crate::plumbing::Scale;
 use crate::raw::Raw;
@@ -194,9 +195,9 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
     /// refuses values outside them.
     #[inline(always)]
-    pub fn put(&self, raw: R, payload: &mut Payload) -> Result<(), Error> {
+    pub fn put<E: Refusing>(&self, raw: R, payload: &mut Payload<E>) -> Result<(), E> {
         if !raw.is_whole() {
-            return Err(self.meaningless(payload.message()));
+            return Err(payload.refusal(move |message| self.meaningless(message)));
         }
         if payload.keeps_limits() && self.check_model(raw.to_bits(), payload)? && self.special(raw.to_bits()).is_none()
         {
@@ -205,7 +206,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if self.store(raw.to_bits(), payload) {
             Ok(())
         } else {
-            Err(self.too_wide(self.physical(raw), payload.message()))
+            Err(payload.refusal(move |message| self.too_wide(self.physical(raw), message)))
         }
     }
 
@@ -223,7 +224,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Writes bits if they can be read back unchanged. Returns whether they can.
     #[inline(always)]
-    fn store(&self, bits: u64, payload: &mut Payload) -> bool {
+    fn store<E: Refusing>(&self, bits: u64, payload: &mut Payload<E>) -> bool {
         let data = self.with(*payload.data(), bits);
         let is_kept = self.bits(data) == bits;
         if is_kept {
@@ -234,16 +235,16 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests bits against what the device model has. It returns whether limits apply to them.
     #[inline(always)]
-    fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
+    fn check_model<E: Refusing>(&self, bits: u64, payload: &Payload<E>) -> Result<bool, E> {
         if !self.lacking.is_empty() && shows_lack(self.lacking, payload.model(), bits) {
-            return Err(self.meaningless(payload.message()));
+            return Err(payload.refusal(move |message| self.meaningless(message)));
         }
         Ok(!self.lacks_bits(payload))
     }
 
     /// Tests whether the device model does not have bits of the signal.
     #[inline(always)]
-    fn lacks_bits(&self, payload: &Payload) -> bool {
+    fn lacks_bits<E: Refusing>(&self, payload: &Payload<E>) -> bool {
         !self.lacking.is_empty() && has_lacking_bits(self.lacking, payload.model())
     }
 
@@ -255,7 +256,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests the value that limits apply to.
     #[inline(always)]
-    fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
+    fn check<E: Refusing>(&self, value: F, payload: &Payload<E>) -> Result<(), E> {
         let (model, message) = (payload.model(), payload.message());
         if F::IS_RAW { self.check_limits(value, model, message) } else { self.check_physical(value, model, message) }
     }
@@ -264,18 +265,20 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// comparing doubles is large where the processor does not do it. It takes the parts of the payload, or there would
     /// have to be one in memory.
     #[inline]
-    fn check_physical(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), Error> {
+    fn check_physical<E: Refusing>(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), E> {
         self.check_limits(value, model, message)
     }
 
     /// Tests a value against the limits. None lies between them that is not finite.
     #[inline(always)]
-    fn check_limits(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), Error> {
+    fn check_limits<E: Refusing>(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), E> {
         match self.limits_in(model) {
             Some((minimum, maximum)) if value.is_within(minimum, maximum) => Ok(()),
             None if value.is_finite() => Ok(()),
-            Some((minimum, maximum)) if value.is_finite() => Err(self.outside(value, minimum, maximum, message)),
-            _ => Err(self.not_finite(message)),
+            Some((minimum, maximum)) if value.is_finite() => {
+                Err(E::of(move || self.outside(value, minimum, maximum, message)))
+            }
+            _ => Err(E::of(move || self.not_finite(message))),
         }
     }
 

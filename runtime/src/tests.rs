@@ -7,10 +7,10 @@ use std::string::ToString;
 
 use heaters::{FRAME, HEAT, Heat, Identifier, Message, To, decode, frame, mode_of};
 
-use crate::plumbing::{Decode, Encode};
+use crate::plumbing::{Decode, Refusing};
 use crate::{
-    AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number, Problem,
-    Reading, Received, Replies, Request, Route, Signal, StatusBit,
+    AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number, Payload,
+    Problem, Reading, Received, Replies, Request, Route, Signal, StatusBit,
 };
 
 /// A request that waits for its reply, whatever that carries.
@@ -281,7 +281,10 @@ fn a_request_to_a_device_model_keeps_to_the_limits_of_that_model_alone() {
     impl Layout for Boost {
         const SIGNALS: &'static [&'static dyn AnySignal] = &[&BOOST];
         const DECODE: Decode<Self> = |data| Self(BOOST.get(data));
-        const ENCODE: Encode<Self> = |boost, payload| BOOST.put(boost.0, payload);
+
+        fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+            BOOST.put(self.0, payload)
+        }
     }
 
     const BOOST: Signal<u16, f64> = Heat::POWER.limits(0.0, 500.0).model_limits(&[(1, Some((0.0, 300.0))), (2, None)]);

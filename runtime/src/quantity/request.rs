@@ -1,6 +1,7 @@
 //! Builds the requests that read and set quantities.
 
-use crate::layout::{Decode, Encode};
+use crate::layout::Decode;
+use crate::payload::Refusing;
 use crate::{
     AnySignal, Data, Destination, Error, Exchange, Layout, Payload, Quantities, Quantity, ReadPath, Request, Route,
 };
@@ -95,9 +96,10 @@ struct Written(Data);
 impl Layout for Written {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self(*data);
-    const ENCODE: Encode<Self> = |written, payload| {
+
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         let constants = u64::from_be_bytes(*payload.data());
-        payload.replace((constants | u64::from_be_bytes(written.0)).to_be_bytes());
+        payload.replace((constants | u64::from_be_bytes(self.0)).to_be_bytes());
         Ok(())
-    };
+    }
 }

@@ -1,6 +1,7 @@
 //! Signals that a frame can lack, since it ends before them or since bits say that there is no value.
 
 use super::Signal;
+use crate::payload::Refusing;
 use crate::physical::{Physical, Scaled};
 use crate::raw::Raw;
 use crate::{Data, Error, Number, Payload};
@@ -31,7 +32,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// The same as [`put`](Self::put). It also refuses a value whose bits say that there is none.
     /// It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
-    pub fn put_some(&self, raw: Option<R>, payload: &mut Payload) -> Result<(), Error> {
+    pub fn put_some<E: Refusing>(&self, raw: Option<R>, payload: &mut Payload<E>) -> Result<(), E> {
         let Some(raw) = raw else { return self.left_out(payload) };
         let before = *payload.data();
         self.put(raw, payload)?;
@@ -40,21 +41,21 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Takes back a value whose bits say that there is none.
     #[inline(always)]
-    pub(super) fn confirm(
+    pub(super) fn confirm<E: Refusing>(
         &self,
-        payload: &mut Payload,
+        payload: &mut Payload<E>,
         before: Data,
         value: impl FnOnce() -> Number,
-    ) -> Result<(), Error> {
+    ) -> Result<(), E> {
         if self.is_there(*payload.data(), before.len()) {
             return Ok(());
         }
         payload.replace(before);
-        Err(self.hidden(value(), "not_available", payload.message()))
+        Err(payload.refusal(move |message| self.hidden(value(), "not_available", message)))
     }
 
     /// Writes that there is no value, unless the frame ends before it.
-    fn left_out(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn left_out<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         match payload.length() {
             Some(length) if !self.place.is_within(length.into()) => Ok(()),
             _ if self.has_absent => {
@@ -63,7 +64,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
                 payload.replace(data);
                 Ok(())
             }
-            _ => Err(Error::Missing { message: payload.message(), signal: self.name }),
+            _ => Err(payload.refusal(move |message| Error::Missing { message, signal: self.name })),
         }
     }
 }
@@ -82,7 +83,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// The same as [`encode`](Self::encode). It also refuses a value whose bits say that there is
     /// none. It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
-    pub fn encode_some(&self, physical: Option<F>, payload: &mut Payload) -> Result<(), Error> {
+    pub fn encode_some<E: Refusing>(&self, physical: Option<F>, payload: &mut Payload<E>) -> Result<(), E> {
         let Some(physical) = physical else { return self.left_out(payload) };
         let before = *payload.data();
         self.encode(physical, payload)?;

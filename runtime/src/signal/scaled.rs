@@ -1,5 +1,6 @@
 //! Signals whose physical value is calculated.
 
+use crate::payload::Refusing;
 use crate::physical::{Physical, Scaled};
 use crate::raw::Raw;
 use crate::{Data, Error, Payload, Signal};
@@ -49,7 +50,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// refuses values outside them, before or after rounding. It then refuses values, too, that
     /// would be rounded to a special raw value.
     #[inline(always)]
-    pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
+    pub fn encode<E: Refusing>(&self, physical: F, payload: &mut Payload<E>) -> Result<(), E> {
         let is_decided = payload.keeps_limits() && self.limits_decide(payload);
         let raw = if is_decided {
             self.check(physical, payload)?;
@@ -83,8 +84,9 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
 
     /// Says why a value is refused that the bits cannot hold.
     #[inline(always)]
-    fn unheld(&self, physical: F, bits: u64, payload: &Payload) -> Error {
-        self.unheld_in(payload.keeps_limits(), physical, bits, payload.model(), payload.message())
+    fn unheld<E: Refusing>(&self, physical: F, bits: u64, payload: &Payload<E>) -> E {
+        let (keeps_limits, model) = (payload.keeps_limits(), payload.model());
+        payload.refusal(move |message| self.unheld_in(keeps_limits, physical, bits, model, message))
     }
 
     /// Says the same. It takes the parts of the payload, or there would have to be one in memory.
@@ -104,13 +106,13 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
     /// have another meaning.
     #[inline(always)]
-    fn check_rounded(&self, physical: F, raw: i64, bits: u64, payload: &Payload) -> Result<(), Error> {
+    fn check_rounded<E: Refusing>(&self, physical: F, raw: i64, bits: u64, payload: &Payload<E>) -> Result<(), E> {
         let sent = || F::scaled(raw, self.exact_scale());
         match self.special(bits) {
             Some(_) if sent() == physical => Ok(()),
             Some(name) => {
                 self.check(physical, payload)?;
-                Err(self.hidden(Scaled::number(physical), name, payload.message()))
+                Err(payload.refusal(move |message| self.hidden(Scaled::number(physical), name, message)))
             }
             None => {
                 self.check(physical, payload)?;
@@ -127,7 +129,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     ///
     /// They are steps that the bits hold, no value between them means something else, and no device model has others.
     #[inline(always)]
-    fn limits_decide(&self, payload: &Payload) -> bool {
+    fn limits_decide<E: Refusing>(&self, payload: &Payload<E>) -> bool {
         let has_no_others = self.specials.is_empty() && self.lacking.is_empty() && self.model_limits.is_empty();
         match self.limits {
             Some((minimum, maximum)) if has_no_others && self.has_limits_on_steps(payload) => {
@@ -148,7 +150,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// What is rounded between them stays between them. The general limits are constants, so the
     /// compiler answers.
     #[inline(always)]
-    fn has_limits_on_steps(&self, payload: &Payload) -> bool {
+    fn has_limits_on_steps<E: Refusing>(&self, payload: &Payload<E>) -> bool {
         let is_general = self.model_limits.is_empty() || payload.model().is_none();
         is_general
             && match self.limits {

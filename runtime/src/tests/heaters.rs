@@ -1,9 +1,9 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Encode, Headed, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
+use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Pattern, Refusing, Shown, Task, Way, Who};
 use crate::{
     AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout,
-    Mode, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
+    Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
 };
 
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -173,7 +173,10 @@ impl Heat {
 impl Layout for Heat {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::POWER.encode(message.power_w, payload);
+
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.encode(self.power_w, payload)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -151,19 +151,18 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
     let writes = members.iter().flatten().map(|id| {
         let Signal { constant, member, .. } = &message.signals[*id];
         let (put, value) = (&member.put, member.value());
-        quote!(#owner::#constant.#put(message.#value, payload))
+        quote!(#owner::#constant.#put(self.#value, payload))
     });
     let writes: Vec<_> = writes.collect();
     let (last, others) = writes.split_last()?;
     let end = (!lengths.is_empty()).then(|| end(message, lengths));
-    let is_short = others.is_empty() && end.is_none();
-    let encode = if is_short { quote!(#last) } else { quote!({ #end #(#others?;)* #last }) };
     Some(quote! {
         impl Layout for #name {
             const SIGNALS: AnySignals = &[#(&#owner::#constants),*];
             const DECODE: Decode<Self> = |data| #decode;
-            const ENCODE: Encode<Self> = |message, payload| #encode;
             #sized
+            #[inline(always)]
+            fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> { #end #(#others?;)* #last }
         }
     })
 }
@@ -197,7 +196,7 @@ fn end(message: &Message, lengths: &[Length]) -> TokenStream {
         let members = signals().map(|signal| signal.member.value());
         // Nobody sees from its values whether a frame ended before them, or said that there are none.
         let had = signals().all(|signal| signal.has_absent).then(|| quote!(|| payload.had(#bytes)));
-        quote!(if #(message.#members.is_some())||* #had { payload.end_after(#bytes); })
+        quote!(if #(self.#members.is_some())||* #had { payload.end_after(#bytes); })
     });
     quote!(payload.end_after(#shortest); #(#cases)*)
 }

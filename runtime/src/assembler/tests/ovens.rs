@@ -1,9 +1,9 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
-use crate::plumbing::{Address, Continuation, Decode, Encode, Headed, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Place, Problem,
-    Protocol, Received, Selector, Signal,
+    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload, Place,
+    Problem, Protocol, Received, Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -73,7 +73,10 @@ const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3));
 impl Layout for Value {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&VALUE];
     const DECODE: Decode<Self> = |data| Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| VALUE.put(message.value, payload);
+
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        VALUE.put(self.value, payload)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,9 @@ use std::vec::Vec;
 
 use super::*;
 use crate::long::{Elements, LongPayload, LongSignal};
-use crate::plumbing::{Address, Decode, Encode, Headed, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Problem, Received, Signal,
+    AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Payload, Problem, Received, Signal,
 };
 
 const NODE: Bits = Bits::new(3, 0);
@@ -86,7 +86,10 @@ struct State {
 impl Layout for State {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { cells: Place::byte(0).read(data) };
-    const ENCODE: Encode<Self> = |_, _| Ok(());
+
+    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+        Ok(())
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +101,10 @@ struct CellsPart {
 impl Layout for CellsPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { part: Cells::NUMBER.read(data), data: Cells::DATA.read(data) };
-    const ENCODE: Encode<Self> = |_, _| Ok(());
+
+    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+        Ok(())
+    }
 }
 
 /// Two bytes, and one to five cells of two bytes in parts of four.
