@@ -299,7 +299,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Asks no more, and ends what [follows](Self::hold_after) it. An answer that still comes is late.
     pub fn cancel(&mut self, ticket: Ticket) {
         let entries = self.entries.iter_mut();
-        for slot in entries.filter(|slot| slot.is_some_and(|entry| entry.ticket == ticket)) {
+        for slot in entries.filter(|slot| slot.as_ref().is_some_and(|entry| entry.ticket == ticket)) {
             *slot = slot.and_then(Entry::cancelled);
         }
         self.end_followers();
@@ -309,7 +309,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     pub fn poll(&mut self, now: u32) -> Step {
         self.free = self.free.filter(|free| !has_come(*free, now));
         for slot in &mut self.entries {
-            *slot = slot.and_then(|entry| entry.rested(now));
+            slot.take_if(|entry| !entry.goes_on(now));
         }
         let ended = self.ended(now);
         self.renew_leaders();
@@ -323,7 +323,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Ends a request, and says how.
     fn ended(&mut self, now: u32) -> Option<Step> {
         let (entries, groups, health) = (&mut self.entries, &mut self.groups, &mut self.health);
-        entries.iter_mut().flatten().find_map(|entry| {
+        entries.iter_mut().flatten().filter(|entry| entry.awaits()).find_map(|entry| {
             let group = groups.asked_by(entry).map(|group| &*group);
             let step = entry.ended(now, group)?;
             if matches!(step, Step::Lost(_) | Step::Missing { .. }) {
@@ -415,10 +415,15 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if self.free.is_some() {
             return None;
         }
-        let due = |slot: &Option<Entry<P>>| slot.filter(|entry| entry.due(now).is_some());
-        let ready = self.entries.iter().enumerate().filter_map(|(place, slot)| Some((place, due(slot)?)));
-        let ready = ready.filter(|(_, entry)| !self.is_blocked(entry, now));
-        let (place, _) = ready.reduce(|one, other| if other.1.is_before(&one.1, now) { other } else { one })?;
+        let mut first: Option<(usize, &Entry<P>)> = None;
+        for (place, slot) in self.entries.iter().enumerate() {
+            let Some(entry) = slot.as_ref().filter(|entry| entry.due(now).is_some()) else { continue };
+            let is_first = first.is_none_or(|(_, first)| entry.is_before(first, now));
+            if is_first && !self.is_blocked(entry, now) {
+                first = Some((place, entry));
+            }
+        }
+        let (place, _) = first?;
         let entry = self.entries.get_mut(place)?.as_mut()?;
         entry.start(now, self.groups.answering(&entry.request));
         self.free = Some(now.wrapping_add(entry.pace.gap)).filter(|free| !has_come(*free, now));
@@ -435,26 +440,25 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     fn is_blocked(&self, own: &Entry<P>, now: u32) -> bool {
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
         others.any(|other| {
-            let is_like = self.groups.is_like(own, other);
-            let is_shared = self.groups.is_shared(own, other);
-            is_like && other.is_open(now)
-                || is_shared && self.groups.is_asked_by(other) && other.awaits() && other.deaf().is_none()
-                || (is_like || is_shared) && other.is_to_go_before(own, now)
+            let is_first = other.is_to_go_before(own, now);
+            let is_awaited = || other.awaits() && other.deaf().is_none() && self.groups.is_asked_by(other);
+            (is_first || other.is_open(now)) && self.groups.is_like(own, other)
+                || (is_first || is_awaited()) && self.groups.is_shared(own, other)
         })
     }
 
     /// Returns the next time at which something is to do.
     fn deadline(&self, now: u32) -> Option<u32> {
         let free = self.free.unwrap_or(now);
-        let times = self.entries.iter().flatten().filter_map(|entry| match entry.state {
+        let next = |entry: &Entry<P>| match entry.state {
             State::Due { .. } if entry.is_held_back() => None,
             State::Due { from } if earlier(from, free, now) => Some(free),
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
-        });
-        let deaf = self.entries.iter().flatten().filter_map(Entry::deaf);
-        let unheard = self.entries.iter().flatten().filter_map(Entry::unheard_from);
+        };
+        let entries = self.entries.iter().flatten();
+        let times = entries.flat_map(|entry| [next(entry), entry.deaf(), entry.unheard_from()]).flatten();
         // What is due and not sent waits for another entry.
-        let times = times.chain(deaf).chain(unheard).filter(|time| !has_come(*time, now));
+        let times = times.filter(|time| !has_come(*time, now));
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })
     }
 }

@@ -300,31 +300,32 @@ impl<P: Protocol> Entry<P> {
         Some(self)
     }
 
-    /// Returns the entry after its rest: due for the next round, or `None` if there is none. What is due and
-    /// was deaf begins anew when no answer to what was held before can come any more.
-    pub fn rested(mut self, now: u32) -> Option<Self> {
+    /// Begins the next round after a rest, and returns whether there is one. What is due and was deaf begins
+    /// anew when no answer to what was held before can come any more.
+    pub fn goes_on(&mut self, now: u32) -> bool {
         match self.state {
             State::Resting { until, .. } if has_come(until, now) => {
-                let period = self.period?;
+                let Some(period) = self.period else { return false };
                 if self.leader.is_some() {
-                    return Some(self.anew(until));
+                    self.begin(until);
+                } else {
+                    let rounds = now.wrapping_sub(self.round) / period;
+                    self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
+                    self.begin(self.round);
                 }
-                let rounds = now.wrapping_sub(self.round) / period;
-                self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
-                Some(self.anew(self.round))
             }
-            State::Due { from } if self.deaf().is_some_and(|deaf| has_come(deaf, now)) => Some(self.anew(from)),
-            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(self),
+            State::Due { from } if self.deaf().is_some_and(|deaf| has_come(deaf, now)) => self.begin(from),
+            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => {}
         }
+        true
     }
 
-    /// Returns the entry with a round that begins, and listens.
-    pub fn anew(mut self, from: u32) -> Self {
+    /// Begins a round, and listens.
+    pub const fn begin(&mut self, from: u32) {
         if let Some(hold) = &mut self.hold {
             hold.deaf = None;
         }
         (self.state, self.sent, self.has_answer) = (State::Due { from }, 0, false);
-        self
     }
 
     /// Returns when the wait for the last frame is over, or what comes after it.

@@ -79,9 +79,11 @@ impl<const G: usize> Groups<G> {
 
     /// Returns the group whose members answer a request.
     pub fn answering<P>(&mut self, request: &Request<P, ()>) -> Option<&mut Group> {
+        if !request.has_many_answers() {
+            return None;
+        }
         let id = request.frame().raw_id();
-        let group = self.0.iter_mut().flatten().find(|group| group.target.matches(id))?;
-        Some(group).filter(|_| request.has_many_answers())
+        self.0.iter_mut().flatten().find(|group| group.target.matches(id))
     }
 
     /// Returns the group that a request has asked in this round.

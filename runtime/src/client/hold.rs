@@ -121,7 +121,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if let Some(held) = self.entries.iter().flatten().find(|held| held.is_torn_by(&entry, &groups)) {
             return Err(NotHeld::Torn(held.ticket));
         }
-        let is_replaced = |slot: &Option<Entry<P>>| slot.is_some_and(|held| held.is_replaced_by(&entry, &groups));
+        let is_replaced =
+            |slot: &Option<Entry<P>>| slot.as_ref().is_some_and(|held| held.is_replaced_by(&entry, &groups));
         let mut new = entry;
         for place in 0..N {
             let Some(slot) = self.entries.get_mut(place).filter(|slot| is_replaced(slot)) else { continue };
@@ -144,7 +145,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Ends what was asked once and could undo a request that is to be sent before it.
     pub(super) fn overtake(&mut self, request: &Entry<P>) {
         let Self { entries, groups, .. } = self;
-        let would_undo = |slot: &Option<Entry<P>>| slot.is_some_and(|asked| asked.would_undo(request, groups));
+        let would_undo = |slot: &Option<Entry<P>>| slot.as_ref().is_some_and(|asked| asked.would_undo(request, groups));
         for slot in entries.iter_mut().filter(|slot| would_undo(slot)) {
             *slot = slot.and_then(Entry::cancelled);
         }
@@ -153,7 +154,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Ends what is held that a request would contradict.
     pub(super) fn release(&mut self, request: &Entry<P>) {
         let Self { entries, groups, .. } = self;
-        let is_released = |slot: &Option<Entry<P>>| slot.is_some_and(|held| held.is_contradicted_by(request, groups));
+        let is_released =
+            |slot: &Option<Entry<P>>| slot.as_ref().is_some_and(|held| held.is_contradicted_by(request, groups));
         for slot in entries.iter_mut().filter(|slot| is_released(slot)) {
             *slot = slot.and_then(Entry::cancelled);
         }
@@ -274,7 +276,7 @@ impl<P: Protocol> Entry<P> {
     pub fn listen(&mut self, now: u32) -> bool {
         let is_deaf = self.deaf().is_some();
         if is_deaf {
-            *self = self.anew(now);
+            self.begin(now);
         }
         is_deaf
     }

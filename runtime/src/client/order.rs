@@ -76,7 +76,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Lets all that follows a request wait until it is in effect anew.
     pub(super) fn hold_back(&mut self, first: Ticket) {
         for place in 0..N {
-            let is_behind = |slot: &Option<Entry<P>>| slot.is_some_and(|entry| self.is_behind(&entry, first));
+            let is_behind = |slot: &Option<Entry<P>>| slot.as_ref().is_some_and(|entry| self.is_behind(entry, first));
             if self.entries.get(place).is_some_and(is_behind) {
                 self.entries.get_mut(place).into_iter().flatten().for_each(Entry::wait_anew);
             }

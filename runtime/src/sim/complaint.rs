@@ -62,7 +62,7 @@ impl Complaints {
     }
 
     pub fn take(&mut self) -> Option<Complaint> {
-        self.0.iter_mut().find_map(Option::take)
+        self.0.iter_mut().find(|slot| slot.is_some())?.take()
     }
 }
 
