@@ -75,6 +75,8 @@ pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, co
     modules: [Module<P>; M],
     groups: [Group<P::Target>; G],
     has_rival: bool,
+    /// When there is something to do, if no frame comes before.
+    next: u32,
 }
 
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
@@ -86,6 +88,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             modules: addresses.map(Module::new),
             groups: groups.map(|(number, target)| Group { number, target, task: Task::Watch, stop: None }),
             has_rival: false,
+            next: 0,
         }
     }
 
@@ -128,6 +131,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Takes a frame from the bus.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame, now: u32) {
+        self.next = now;
         match self.client.handle(frame) {
             Heard::Answer { ticket, received } => self.answered(Some(ticket), &received, now),
             // A late answer tells of no request, but of the module.
@@ -140,6 +144,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Returns the next frame to send. Call it until there is none, after all frames from the bus were handled.
     pub fn poll(&mut self, now: u32) -> Option<Frame> {
+        if !is_due(self.next, now) {
+            return None;
+        }
         for place in 0..M {
             if is_due(self.modules[place].due, now) {
                 self.modules[place].due = now.wrapping_add(self.settings.round);
@@ -154,7 +161,12 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
                 Step::Silent(node) => self.forget(|module| module.node == node),
                 // A module that is back tells its state, and groups are asked again.
                 Step::Done(_) | Step::Missing { .. } | Step::Back(_) => {}
-                Step::Wait(_) => return None,
+                Step::Wait(until) => {
+                    let rounds = self.modules.iter().map(|module| module.due).chain(until);
+                    let latest = now.wrapping_add(self.settings.round);
+                    self.next = rounds.fold(latest, |one, other| if is_due(one, other) { one } else { other });
+                    return None;
+                }
             }
         }
     }
@@ -202,6 +214,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Begins a task of a group.
     fn begin(&mut self, number: u8, task: Task, now: u32) -> Result<(), Refused> {
         let Self { client, modules, settings, .. } = self;
+        self.next = now;
         let group = self.groups.iter_mut().find(|group| group.number == number).ok_or(Refused::Group)?;
         let members = modules.iter_mut().filter(|module| module.group == Some(number));
         members.for_each(|module| module.begin(client, now));
