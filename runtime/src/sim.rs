@@ -99,7 +99,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             nodes: devices.map(|(number, device)| Node::new(number, device)),
             rules,
             random: Random::new(seed),
-            wire: Wire([None; W]),
+            wire: Wire::EMPTY,
             sent: None,
             other: None,
             complaints: Complaints::NONE,
@@ -170,13 +170,12 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
                 self.complaints.add(Complaint::Unfed { node: node.number });
             }
             while let Some(report) = node.report(now) {
-                let Self { random, wire, .. } = self;
-                node.carry(report, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
+                node.carry(report, &mut self.random, &mut self.wire, now);
             }
         }
         if let Some((frame, every, due)) = self.other.filter(|(_, _, due)| has_come(*due, now)) {
             self.other = Some((frame, every, due.wrapping_add(every)));
-            self.wire.send(now, frame);
+            self.wire.send(now, None, frame);
             if let Ok(received) = Received::decode(&frame) {
                 self.deliver(&received, now);
             }
@@ -196,7 +195,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             });
             let Some(reply) = reply.filter(|_| speaks) else { continue };
             speaks = !has_coordinator(request);
-            node.spoil(request, reply, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
+            node.spoil(request, reply, random, wire, now);
         }
     }
 

@@ -1,6 +1,6 @@
 //! A device on the bus.
 
-use super::{Answer, Device, Faults, Random, Rules, Tally};
+use super::{Answer, Device, Faults, Random, Rules, Tally, Wire};
 use crate::clock::has_come;
 use crate::plumbing::Who;
 use crate::{Addressed, Destination, Error, Frame, Protocol, Received};
@@ -133,29 +133,30 @@ impl<D> Node<D> {
         }
     }
 
-    /// Puts the faults of frames into a reply, and hands over each frame with the time until it comes.
-    pub fn spoil<P: Addressed>(
+    /// Puts the faults of frames into a reply, and sends it.
+    pub fn spoil<P: Addressed, const W: usize>(
         &mut self,
         request: &Received<P>,
         reply: Frame,
         random: &mut Random,
-        send: impl FnMut(u32, Frame),
+        wire: &mut Wire<W>,
+        now: u32,
     ) {
         let is_disguised = happens(random, self.faults.disguised, &mut self.tally.disguised);
         let reply = if is_disguised { self.disguise(request, reply, random) } else { reply };
-        self.carry(reply, random, send);
+        self.carry(reply, random, wire, now);
     }
 
-    /// Puts the other faults of frames into one, and hands it over each time that it comes, with the time until then.
-    pub fn carry(&mut self, reply: Frame, random: &mut Random, mut send: impl FnMut(u32, Frame)) {
+    /// Puts the other faults of frames into one, and sends it as often as it comes.
+    pub fn carry<const W: usize>(&mut self, reply: Frame, random: &mut Random, wire: &mut Wire<W>, now: u32) {
         let Faults { lost, twice, broken, slowest, .. } = self.faults;
         let is_broken = happens(random, broken, &mut self.tally.broken);
         let reply = if is_broken { cut(reply, random) } else { reply };
         for _ in 0..=u8::from(happens(random, twice, &mut self.tally.twice)) {
             let delay = random.below(slowest.max(1)).saturating_add(1);
             if !happens(random, lost, &mut self.tally.lost) {
-                self.tally.delay = self.tally.delay.wrapping_add(delay.into());
-                send(delay, reply);
+                let at = wire.send(now.wrapping_add(delay), Some(self.number), reply);
+                self.tally.delay = self.tally.delay.wrapping_add(at.wrapping_sub(now).into());
             }
         }
     }

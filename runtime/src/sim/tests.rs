@@ -344,6 +344,45 @@ fn a_device_is_asked_for_reports_until_it_has_none() {
     assert_eq!(counts, [0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
 }
 
+/// A device that counts its reports, one each 7 ms.
+struct Counting(u8);
+
+impl Device<Message> for Counting {
+    fn answer(&mut self, _: &Received<Message>, _: u32) -> Answer<Message> {
+        Answer::Silence
+    }
+
+    fn report(&mut self, node: u8, now: u32) -> Option<Frame> {
+        if now < 7 * u32::from(self.0) {
+            return None;
+        }
+        self.0 += 1;
+        Some(frame(0x010A_F000 | u32::from(node), [self.0; 4]))
+    }
+}
+
+#[test]
+fn slow_frames_overtake_those_of_other_devices_and_never_their_own() {
+    let mut are_mixed = false;
+    for seed in 0..20 {
+        let mut bench: Bench<Message, Counting, 2, 32> = Bench::new([(1, Counting(0)), (2, Counting(0))], RULES, seed);
+        for node in [1, 2] {
+            bench.faults(node).expect("a device").slowest = 50;
+        }
+        let mut heard: [Vec<u8>; 2] = [Vec::new(), Vec::new()];
+        for now in 0..300 {
+            for event in core::iter::from_fn(|| bench.poll(now)) {
+                let Event::Frame(frame) = event else { continue };
+                heard[usize::from(frame.raw_id() & 0xFF == 2)].push(frame.bytes()[0]);
+            }
+            are_mixed |= heard[0].len() > heard[1].len() + 1;
+        }
+        let sent: Vec<u8> = (1..=heard[0].len().max(heard[1].len())).map(|number| number as u8).collect();
+        assert!(sent.len() > 30 && heard.iter().all(|heard| sent.starts_with(heard)), "seed {seed}: {heard:?}");
+    }
+    assert!(are_mixed);
+}
+
 #[test]
 fn a_bench_takes_no_more_memory_than_its_documentation_says() {
     type Sized<const N: usize, const W: usize> = Bench<Message, [u8; 0], N, W>;

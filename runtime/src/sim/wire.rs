@@ -1,25 +1,47 @@
 //! Frames under way.
 
 use crate::Frame;
-use crate::clock::{earlier, has_come};
+use crate::clock::{earlier, has_come, later_of};
 
-/// Frames under way to the client, at most `W`.
+/// Frames under way to the client, at most `W`, in the order in which they were sent. Behind the last one all slots
+/// are empty.
 #[derive(Clone, Copy, Debug)]
-pub struct Wire<const W: usize>(pub [Option<(u32, Frame)>; W]);
+pub struct Wire<const W: usize>([Option<UnderWay>; W]);
+
+/// A frame under way.
+#[derive(Clone, Copy, Debug)]
+struct UnderWay {
+    /// When it comes.
+    at: u32,
+    /// The device that has sent it. Without one, it is another controller.
+    from: Option<u8>,
+    frame: Frame,
+}
 
 impl<const W: usize> Wire<W> {
-    /// Sends a frame that comes at a time. It is lost if there is no room.
-    pub fn send(&mut self, at: u32, frame: Frame) {
+    pub const EMPTY: Self = Self([None; W]);
+
+    /// Sends a frame that comes at a time, but not before what its sender has sent before. It is lost if there is no
+    /// room. Returns when it comes.
+    pub fn send(&mut self, at: u32, from: Option<u8>, frame: Frame) -> u32 {
+        let at = self.under_way().filter(|other| other.from == from).map(|other| other.at).fold(at, later_of);
         if let Some(slot) = self.0.iter_mut().find(|slot| slot.is_none()) {
-            *slot = Some((at, frame));
+            *slot = Some(UnderWay { at, from, frame });
         }
+        at
     }
 
     /// Takes out the frame that has come first.
     pub fn arrived(&mut self, now: u32) -> Option<Frame> {
-        let come = self.0.iter_mut().filter(|slot| slot.is_some_and(|(at, _)| has_come(at, now)));
-        let at = |slot: &Option<(u32, Frame)>| slot.map_or(now, |(at, _)| at);
-        let first = come.reduce(|one, other| if earlier(at(other), at(one), now) { other } else { one })?;
-        first.take().map(|(_, frame)| frame)
+        let come = self.under_way().enumerate().filter(|(_, frame)| has_come(frame.at, now));
+        let (place, _) = come.reduce(|one, other| if earlier(other.1.at, one.1.at, now) { other } else { one })?;
+        let rest = self.0.get_mut(place..)?;
+        let first = rest.first_mut()?.take();
+        rest.rotate_left(1);
+        first.map(|first| first.frame)
+    }
+
+    fn under_way(&self) -> impl Iterator<Item = &UnderWay> {
+        self.0.iter().map_while(Option::as_ref)
     }
 }
