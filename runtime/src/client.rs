@@ -308,11 +308,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Says what to do next.
     pub fn poll(&mut self, now: u32) -> Step {
         self.free = self.free.filter(|free| !has_come(*free, now));
-        for slot in &mut self.entries {
-            slot.take_if(|entry| !entry.goes_on(now));
-        }
-        let ended = self.ended(now);
-        self.renew_leaders();
+        let ended = self.pass(now);
         if let Some(Step::Done(ticket)) = ended {
             self.lead(ticket);
         }
@@ -320,17 +316,24 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         ended.or_else(|| self.send(now)).unwrap_or_else(|| Step::Wait(self.deadline(now)))
     }
 
-    /// Ends a request, and says how.
-    fn ended(&mut self, now: u32) -> Option<Step> {
-        let (entries, groups, health) = (&mut self.entries, &mut self.groups, &mut self.health);
-        entries.iter_mut().flatten().filter(|entry| entry.awaits()).find_map(|entry| {
+    /// Lets time pass. Begins rounds, and ends a request, and says how.
+    fn pass(&mut self, now: u32) -> Option<Step> {
+        let Self { entries, groups, health, .. } = self;
+        let (mut ended, mut are_leaders_wanted) = (None, false);
+        for slot in entries {
+            slot.take_if(|entry| !entry.goes_on(now));
+            let Some(entry) = slot.as_mut().filter(|entry| ended.is_none() && entry.awaits()) else { continue };
             let group = groups.asked_by(entry).map(|group| &*group);
-            let step = entry.ended(now, group)?;
-            if matches!(step, Step::Lost(_) | Step::Missing { .. }) {
+            ended = entry.ended(now, group);
+            if let Some(Step::Lost(_) | Step::Missing { .. }) = ended {
                 health.lost(&entry.silent(group));
             }
-            Some(step)
-        })
+            are_leaders_wanted |= entry.leader.is_some_and(|leader| leader.is_wanted);
+        }
+        if are_leaders_wanted {
+            self.renew_leaders();
+        }
+        ended
     }
 
     /// Says what a received frame is.

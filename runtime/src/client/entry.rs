@@ -111,6 +111,7 @@ impl<P: Protocol> Entry<P> {
     ///
     /// First comes what is hurried. Then comes what keeps a module alive and has waited for a gap, or follows
     /// another request. Then comes what has waited longest.
+    #[inline]
     pub fn is_before(&self, other: &Self, now: u32) -> bool {
         let Some((own, others)) = self.due(now).zip(other.due(now)) else { return false };
         let [rank, other_rank] =
