@@ -188,7 +188,8 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
     fn deliver(&mut self, request: &Received<P>, now: u32) {
         let Self { nodes, rules, random, wire, complaints, .. } = self;
         let mut speaks = true;
-        for node in nodes.iter_mut().filter(|node| node.is_asked(request)) {
+        let asked = request.node();
+        for node in nodes.iter_mut().filter(|node| node.is_asked(request, asked)) {
             let reply = node.answer(request, rules, random, now).unwrap_or_else(|error| {
                 complaints.add(Complaint::Answer { node: node.number, error });
                 None

@@ -86,13 +86,13 @@ impl<D> Node<D> {
         if self.is_up() { self.device.report(self.number, now) } else { None }
     }
 
-    /// Tests whether a request addresses it.
-    pub fn is_asked<P: Protocol>(&self, request: &Received<P>) -> bool
+    /// Tests whether it is the module that a request addresses, or one of many.
+    pub fn is_asked<P: Protocol>(&self, request: &Received<P>, module: Option<i32>) -> bool
     where
         D: Device<P>,
     {
-        match request.node() {
-            Some(node) => node == i32::from(self.number),
+        match module {
+            Some(module) => module == i32::from(self.number),
             None => self.device.is_asked(request),
         }
     }
