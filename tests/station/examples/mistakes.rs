@@ -45,8 +45,8 @@ const MISTAKES: &[Mistake] = &[
     Mistake {
         name: "nothing is sent again",
         file: ENTRY,
-        right: "if !is_done && self.sent < self.pace.tries {",
-        wrong: "if !is_done && self.sent < self.pace.tries.min(1) {",
+        right: "if !is_done && self.leader.is_none() && self.sent < self.pace.tries {",
+        wrong: "if !is_done && self.leader.is_none() && self.sent < self.pace.tries.min(1) {",
     },
     Mistake {
         name: "a late answer is taken for a new one",
