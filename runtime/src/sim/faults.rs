@@ -21,7 +21,8 @@ pub struct Faults {
     pub code: u64,
     /// Replies whose values [drift](super::Device::drift).
     pub drifted: u8,
-    /// The longest time in milliseconds until a reply comes. The shortest is 1.
+    /// The longest time in milliseconds until a reply comes. The shortest is 1. No reply comes before an earlier frame
+    /// of the device, so it can take longer.
     pub slowest: u32,
     /// When it starts anew by itself.
     pub restarts: Option<u32>,
