@@ -4,6 +4,7 @@
 //! Modules and batteries that answer in several frames are asked again as long as a frame is missing.
 
 mod battery;
+mod counting;
 mod label;
 mod modules;
 
