@@ -7,7 +7,6 @@ mod seeds;
 use bus::fleets::{infies, maxwells};
 use bus::{Bus, Charger, RISE_MA};
 use canspec_protocols::{infy, mxr};
-use canspec_runtime::sim::{Faults, Random};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
 use canspec_station::{Refused, State};
 use seeds::{CYCLE, run};
@@ -16,69 +15,6 @@ use seeds::{CYCLE, run};
 const FULL: (i32, i32) = (500_000, 10_000);
 /// How many seeds run here, for a poor and a fair cycle each. `just seeds` runs more and longer.
 const SEEDS: u64 = 200;
-
-/// Lets the groups deliver and stop while modules fail, and then not.
-fn endure<P: Quantities + Addressed, const N: usize, const G: usize>(
-    mut bus: Bus<P, N, G>,
-    groups: [u8; G],
-    nodes: [u8; N],
-    code: u64,
-    seed: u64,
-) where
-    P::Target: PartialEq,
-{
-    const STOP: u32 = 24_000;
-    let mut random = Random::new(seed);
-    for node in nodes {
-        let drawn = Faults::random(&mut random, 12, STOP);
-        // A reply under another address says of one module what is true of another. Nothing shows that.
-        *bus.faults(node) = Faults { disguised: 0, code, slowest: 1 + random.below(200), ..drawn };
-    }
-    bus.run(3000);
-    for group in groups {
-        bus.station.deliver(group, FULL.0, FULL.1, bus.now).expect("the document allows it");
-    }
-    bus.run(STOP);
-    for node in nodes {
-        let (Faults { dies, .. }, device) = (*bus.faults(node), *bus.device(node));
-        assert!(dies.is_some() || device.switched_on > 0, "seed {seed}: module {node} never delivered");
-    }
-    for group in groups {
-        bus.station.stop(group, bus.now).expect("the group is known");
-    }
-    while bus.now < STOP + 8000 {
-        bus.run(bus.now + 10);
-        for node in nodes {
-            assert!(bus.state(node) != Some(State::Off) || !bus.device(node).is_on, "seed {seed}, module {node}");
-        }
-    }
-    for node in nodes {
-        let Faults { dies, .. } = *bus.faults(node);
-        *bus.faults(node) = Faults { dies, ..Faults::NONE };
-    }
-    bus.run(STOP + 16_000);
-    for node in nodes {
-        let (state, is_dead, device) = (bus.state(node), bus.faults(node).dies.is_some(), *bus.device(node));
-        assert!(!device.was_bare, "seed {seed}: module {node} was switched on without its set-point");
-        assert!(is_dead || !device.is_on, "seed {seed}: module {node} is on");
-        let expected = if is_dead { State::Unknown } else { State::Off };
-        assert!(state == Some(expected) || is_dead && state.is_none(), "seed {seed}, module {node}: {state:?}");
-    }
-}
-
-#[test]
-fn infy_modules_are_fed_and_stopped_whatever_fails() {
-    for seed in 0..50 {
-        endure(infies(seed), [1, 2], [0, 1, 2, 3, 4, 5, 6, 7], 4, seed);
-    }
-}
-
-#[test]
-fn maxwell_modules_are_fed_and_stopped_whatever_fails() {
-    for seed in 0..50 {
-        endure(maxwells(seed), [5], [3, 4, 5, 6], 0xF2, seed);
-    }
-}
 
 #[test]
 fn modules_are_found_and_the_current_rises_step_by_step() {
