@@ -68,9 +68,9 @@ const CHARACTERISTIC_WORD: CharacteristicWord = CharacteristicWord {
 enum Stage {
     /// Modules assign their addresses, perhaps until this time.
     Assignment(u32),
-    /// It asks a module, after the last one that is there and so many others that are not.
+    /// It asks the module after the last one that is there and the missing ones behind that.
     Count { asked: Vec<Ticket>, has_answered: bool, last: u8, missing: u8 },
-    /// So many modules are there.
+    /// It knows how many modules are there.
     Counted(u8),
 }
 
