@@ -162,18 +162,6 @@ impl Layout for Cells {
     const SIGNALS: AnySignals =
         &[&Self::VOLTAGE_0, &Self::GROUP_0, &Self::VOLTAGE_1, &Self::GROUP_1, &Self::VOLTAGE_2, &Self::GROUP_2];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(4);
-        if message.voltage_v[2].is_some() || message.group[2].is_some() {
-            payload.end_after(6);
-        }
-        Self::VOLTAGE_0.encode_some(message.voltage_v[0], payload)?;
-        Self::VOLTAGE_1.encode_some(message.voltage_v[1], payload)?;
-        Self::VOLTAGE_2.encode_some(message.voltage_v[2], payload)?;
-        Self::GROUP_0.put_some(message.group[0], payload)?;
-        Self::GROUP_1.put_some(message.group[1], payload)?;
-        Self::GROUP_2.put_some(message.group[2], payload)
-    };
     const LENGTHS: &'static [u8] = &[4, 6];
 
     #[inline]
@@ -190,6 +178,20 @@ impl Layout for Cells {
                 Self::GROUP_2.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(4);
+        if self.voltage_v[2].is_some() || self.group[2].is_some() {
+            payload.end_after(6);
+        }
+        Self::VOLTAGE_0.encode_some(self.voltage_v[0], payload)?;
+        Self::VOLTAGE_1.encode_some(self.voltage_v[1], payload)?;
+        Self::VOLTAGE_2.encode_some(self.voltage_v[2], payload)?;
+        Self::GROUP_0.put_some(self.group[0], payload)?;
+        Self::GROUP_1.put_some(self.group[1], payload)?;
+        Self::GROUP_2.put_some(self.group[2], payload)
     }
 }
 
@@ -235,14 +237,16 @@ impl Layout for State {
         current_a: [Self::CURRENT_1.decode(data), Self::CURRENT_2.decode(data)],
         valve: [Self::VALVE_1.get(data), Self::VALVE_2.get(data), Self::VALVE_3.get(data), Self::VALVE_4.get(data)],
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CURRENT_1.encode(message.current_a[0], payload)?;
-        Self::CURRENT_2.encode(message.current_a[1], payload)?;
-        Self::VALVE_1.put(message.valve[0], payload)?;
-        Self::VALVE_2.put(message.valve[1], payload)?;
-        Self::VALVE_3.put(message.valve[2], payload)?;
-        Self::VALVE_4.put(message.valve[3], payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT_1.encode(self.current_a[0], payload)?;
+        Self::CURRENT_2.encode(self.current_a[1], payload)?;
+        Self::VALVE_1.put(self.valve[0], payload)?;
+        Self::VALVE_2.put(self.valve[1], payload)?;
+        Self::VALVE_3.put(self.valve[2], payload)?;
+        Self::VALVE_4.put(self.valve[3], payload)
+    }
 }
 
 /// Every message that a frame can carry.

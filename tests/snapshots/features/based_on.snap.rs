@@ -151,7 +151,11 @@ impl Speed {
 impl Layout for Speed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_rpm, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_rpm, payload)
+    }
 }
 
 /// Temperature: `command` 0x003. Section 1.2.
@@ -184,7 +188,11 @@ impl Temperature {
 impl Layout for Temperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -161,7 +161,11 @@ impl Delivered {
 impl Layout for Delivered {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Demanded: `number` 0x01. Section 3.2.
@@ -186,7 +190,11 @@ impl Demanded {
 impl Layout for Demanded {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -141,7 +141,11 @@ impl NoteSize {
 impl Layout for NoteSize {
     const SIGNALS: AnySignals = &[&Self::LETTERS];
     const DECODE: Decode<Self> = |data| Self { letters: Self::LETTERS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::LETTERS.put(message.letters, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::LETTERS.put(self.letters, payload)
+    }
 }
 
 /// What somebody noted: `command` 0x22. Section 3.
@@ -197,10 +201,12 @@ impl NotePart {
 impl Layout for NotePart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Note {
@@ -276,11 +282,13 @@ impl Layout for RemarkPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::COUNTER.put(message.counter, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::COUNTER.put(self.counter, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Remark {

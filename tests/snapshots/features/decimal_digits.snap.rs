@@ -230,7 +230,11 @@ impl Delay {
 impl Layout for Delay {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_min: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_min, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_min, payload)
+    }
 }
 
 /// Month of the last reading: `command` 0x02. Section 2.
@@ -262,7 +266,11 @@ impl Month {
 impl Layout for Month {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Every message that a frame can carry.

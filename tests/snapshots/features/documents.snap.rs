@@ -152,7 +152,11 @@ impl Speed {
 impl Layout for Speed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_rpm, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_rpm, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -184,11 +184,13 @@ impl Layout for Battery {
         current_a: Self::CURRENT.decode(data),
         level_percent: Self::LEVEL.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)?;
-        Self::LEVEL.put(message.level_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)?;
+        Self::LEVEL.put(self.level_percent, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -211,11 +211,13 @@ impl Layout for EnginePart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::COUNTER.put(message.counter, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::COUNTER.put(self.counter, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Engine {
@@ -310,11 +312,13 @@ impl Layout for CellsPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::COUNTER.put(message.counter, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::COUNTER.put(self.counter, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Cells {

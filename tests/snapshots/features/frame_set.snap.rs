@@ -239,7 +239,11 @@ impl Heat {
 impl Layout for Heat {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_c, payload)
+    }
 }
 
 /// Power: `signal` 0x02. Section 4.
@@ -263,7 +267,11 @@ impl Power {
 impl Layout for Power {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -178,16 +178,18 @@ impl Layout for State {
         warnings_cell: [Self::WARNINGS_CELL_1.get(data), Self::WARNINGS_CELL_2.get(data)],
         warnings_level_v: Self::WARNINGS_LEVEL.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::ALARMS_LEVEL.encode(message.alarms_level_v, payload)?;
-        Self::ALARMS_PACK.put(message.alarms_pack, payload)?;
-        Self::ALARMS_CELL_1.put(message.alarms_cell[0], payload)?;
-        Self::ALARMS_CELL_2.put(message.alarms_cell[1], payload)?;
-        Self::WARNINGS_PACK.put(message.warnings_pack, payload)?;
-        Self::WARNINGS_CELL_1.put(message.warnings_cell[0], payload)?;
-        Self::WARNINGS_CELL_2.put(message.warnings_cell[1], payload)?;
-        Self::WARNINGS_LEVEL.encode(message.warnings_level_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::ALARMS_LEVEL.encode(self.alarms_level_v, payload)?;
+        Self::ALARMS_PACK.put(self.alarms_pack, payload)?;
+        Self::ALARMS_CELL_1.put(self.alarms_cell[0], payload)?;
+        Self::ALARMS_CELL_2.put(self.alarms_cell[1], payload)?;
+        Self::WARNINGS_PACK.put(self.warnings_pack, payload)?;
+        Self::WARNINGS_CELL_1.put(self.warnings_cell[0], payload)?;
+        Self::WARNINGS_CELL_2.put(self.warnings_cell[1], payload)?;
+        Self::WARNINGS_LEVEL.encode(self.warnings_level_v, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -415,35 +415,6 @@ impl Layout for TpSingleFrame {
         &Self::DATA_7,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(2);
-        if message.data[1].is_some() {
-            payload.end_after(3);
-        }
-        if message.data[2].is_some() {
-            payload.end_after(4);
-        }
-        if message.data[3].is_some() {
-            payload.end_after(5);
-        }
-        if message.data[4].is_some() {
-            payload.end_after(6);
-        }
-        if message.data[5].is_some() {
-            payload.end_after(7);
-        }
-        if message.data[6].is_some() {
-            payload.end_after(8);
-        }
-        Self::SIZE.put(message.size, payload)?;
-        Self::DATA_1.put_some(message.data[0], payload)?;
-        Self::DATA_2.put_some(message.data[1], payload)?;
-        Self::DATA_3.put_some(message.data[2], payload)?;
-        Self::DATA_4.put_some(message.data[3], payload)?;
-        Self::DATA_5.put_some(message.data[4], payload)?;
-        Self::DATA_6.put_some(message.data[5], payload)?;
-        Self::DATA_7.put_some(message.data[6], payload)
-    };
     const LENGTHS: &'static [u8] = &[2, 3, 4, 5, 6, 7, 8];
 
     #[inline]
@@ -460,6 +431,37 @@ impl Layout for TpSingleFrame {
                 Self::DATA_7.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(2);
+        if self.data[1].is_some() {
+            payload.end_after(3);
+        }
+        if self.data[2].is_some() {
+            payload.end_after(4);
+        }
+        if self.data[3].is_some() {
+            payload.end_after(5);
+        }
+        if self.data[4].is_some() {
+            payload.end_after(6);
+        }
+        if self.data[5].is_some() {
+            payload.end_after(7);
+        }
+        if self.data[6].is_some() {
+            payload.end_after(8);
+        }
+        Self::SIZE.put(self.size, payload)?;
+        Self::DATA_1.put_some(self.data[0], payload)?;
+        Self::DATA_2.put_some(self.data[1], payload)?;
+        Self::DATA_3.put_some(self.data[2], payload)?;
+        Self::DATA_4.put_some(self.data[3], payload)?;
+        Self::DATA_5.put_some(self.data[4], payload)?;
+        Self::DATA_6.put_some(self.data[5], payload)?;
+        Self::DATA_7.put_some(self.data[6], payload)
     }
 }
 
@@ -502,10 +504,12 @@ impl TpFirstFrame {
 impl Layout for TpFirstFrame {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { size: Self::SIZE.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 /// Next bytes of a message: `pci` 0x2. Section 1.
@@ -574,35 +578,6 @@ impl Layout for TpConsecutiveFrame {
         &Self::DATA_7,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(2);
-        if message.data[1].is_some() {
-            payload.end_after(3);
-        }
-        if message.data[2].is_some() {
-            payload.end_after(4);
-        }
-        if message.data[3].is_some() {
-            payload.end_after(5);
-        }
-        if message.data[4].is_some() {
-            payload.end_after(6);
-        }
-        if message.data[5].is_some() {
-            payload.end_after(7);
-        }
-        if message.data[6].is_some() {
-            payload.end_after(8);
-        }
-        Self::NUMBER.put(message.number, payload)?;
-        Self::DATA_1.put_some(message.data[0], payload)?;
-        Self::DATA_2.put_some(message.data[1], payload)?;
-        Self::DATA_3.put_some(message.data[2], payload)?;
-        Self::DATA_4.put_some(message.data[3], payload)?;
-        Self::DATA_5.put_some(message.data[4], payload)?;
-        Self::DATA_6.put_some(message.data[5], payload)?;
-        Self::DATA_7.put_some(message.data[6], payload)
-    };
     const LENGTHS: &'static [u8] = &[2, 3, 4, 5, 6, 7, 8];
 
     #[inline]
@@ -619,6 +594,37 @@ impl Layout for TpConsecutiveFrame {
                 Self::DATA_7.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(2);
+        if self.data[1].is_some() {
+            payload.end_after(3);
+        }
+        if self.data[2].is_some() {
+            payload.end_after(4);
+        }
+        if self.data[3].is_some() {
+            payload.end_after(5);
+        }
+        if self.data[4].is_some() {
+            payload.end_after(6);
+        }
+        if self.data[5].is_some() {
+            payload.end_after(7);
+        }
+        if self.data[6].is_some() {
+            payload.end_after(8);
+        }
+        Self::NUMBER.put(self.number, payload)?;
+        Self::DATA_1.put_some(self.data[0], payload)?;
+        Self::DATA_2.put_some(self.data[1], payload)?;
+        Self::DATA_3.put_some(self.data[2], payload)?;
+        Self::DATA_4.put_some(self.data[3], payload)?;
+        Self::DATA_5.put_some(self.data[4], payload)?;
+        Self::DATA_6.put_some(self.data[5], payload)?;
+        Self::DATA_7.put_some(self.data[6], payload)
     }
 }
 
@@ -675,16 +681,6 @@ impl TpFlowControl {
 impl Layout for TpFlowControl {
     const SIGNALS: AnySignals = &[&Self::STATUS, &Self::BLOCK, &Self::SEPARATION, &Self::PADDING];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(3);
-        if message.padding.is_some() {
-            payload.end_after(8);
-        }
-        Self::STATUS.put(message.status, payload)?;
-        Self::BLOCK.put(message.block, payload)?;
-        Self::SEPARATION.put(message.separation, payload)?;
-        Self::PADDING.put_some(message.padding, payload)
-    };
     const LENGTHS: &'static [u8] = &[3, 8];
 
     #[inline]
@@ -695,6 +691,18 @@ impl Layout for TpFlowControl {
             separation: Self::SEPARATION.get(data),
             padding: Self::PADDING.get_some(data, length),
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(3);
+        if self.padding.is_some() {
+            payload.end_after(8);
+        }
+        Self::STATUS.put(self.status, payload)?;
+        Self::BLOCK.put(self.block, payload)?;
+        Self::SEPARATION.put(self.separation, payload)?;
+        Self::PADDING.put_some(self.padding, payload)
     }
 }
 

@@ -141,15 +141,17 @@ impl Layout for Measurement {
         mode: Self::MODE.get(data),
         counter: Self::COUNTER.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)?;
-        Self::TEMPERATURE.encode(message.temperature_c, payload)?;
-        Self::POWER.encode(message.power_w, payload)?;
-        Self::OUTPUT.put(message.output, payload)?;
-        Self::MODE.put(message.mode, payload)?;
-        Self::COUNTER.put(message.counter, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)?;
+        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
+        Self::POWER.encode(self.power_w, payload)?;
+        Self::OUTPUT.put(self.output, payload)?;
+        Self::MODE.put(self.mode, payload)?;
+        Self::COUNTER.put(self.counter, payload)
+    }
 }
 
 /// Every message that a frame can carry.

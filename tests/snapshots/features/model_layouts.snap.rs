@@ -169,7 +169,11 @@ impl SupplyAc {
 impl Layout for SupplyAc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Supply dc: `command` 0x001. Section 1.
@@ -194,7 +198,11 @@ impl SupplyDc {
 impl Layout for SupplyDc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -226,10 +226,12 @@ impl Layout for SetSpeed {
     const SIGNALS: AnySignals = &[&Self::SPEED, &Self::FLOW];
     const DECODE: Decode<Self> =
         |data| Self { speed_rpm: Self::SPEED.get(data), flow_percent: Self::FLOW.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SPEED.put(message.speed_rpm, payload)?;
-        Self::FLOW.encode(message.flow_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SPEED.put(self.speed_rpm, payload)?;
+        Self::FLOW.encode(self.flow_percent, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -267,7 +267,11 @@ impl SwitchRelay {
 impl Layout for SwitchRelay {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.put(self.power, payload)
+    }
 }
 
 /// Every message that a frame can carry.

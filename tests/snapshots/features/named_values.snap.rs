@@ -280,10 +280,12 @@ impl Switch {
 impl Layout for Switch {
     const SIGNALS: AnySignals = &[&Self::POWER, &Self::LAMP];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data), lamp: Self::LAMP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::POWER.put(message.power, payload)?;
-        Self::LAMP.put(message.lamp, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.put(self.power, payload)?;
+        Self::LAMP.put(self.lamp, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -258,18 +258,6 @@ impl Layout for Limits {
     const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::TEMPERATURE, &Self::LAMP, &Self::READY, &Self::COUNTER, &Self::DAY];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(5);
-        if message.day.is_some() || payload.had(6) {
-            payload.end_after(6);
-        }
-        Self::VOLTAGE.encode_some(message.voltage_v, payload)?;
-        Self::TEMPERATURE.put_some(message.temperature_c, payload)?;
-        Self::LAMP.put(message.lamp, payload)?;
-        Self::READY.put(message.ready, payload)?;
-        Self::COUNTER.put(message.counter, payload)?;
-        Self::DAY.put_some(message.day, payload)
-    };
     const LENGTHS: &'static [u8] = &[5, 6];
 
     #[inline]
@@ -282,6 +270,20 @@ impl Layout for Limits {
             counter: Self::COUNTER.get(data),
             day: Self::DAY.get_some(data, length),
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(5);
+        if self.day.is_some() || payload.had(6) {
+            payload.end_after(6);
+        }
+        Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
+        Self::TEMPERATURE.put_some(self.temperature_c, payload)?;
+        Self::LAMP.put(self.lamp, payload)?;
+        Self::READY.put(self.ready, payload)?;
+        Self::COUNTER.put(self.counter, payload)?;
+        Self::DAY.put_some(self.day, payload)
     }
 }
 

@@ -182,20 +182,6 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::PHASE, &Self::ALLOWED, &Self::HOURS, &Self::CYCLES];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(3);
-        if message.allowed_percent.is_some() {
-            payload.end_after(4);
-        }
-        if message.hours_h.is_some() || message.cycles.is_some() {
-            payload.end_after(7);
-        }
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::PHASE.put(message.phase, payload)?;
-        Self::ALLOWED.put_some(message.allowed_percent, payload)?;
-        Self::HOURS.put_some(message.hours_h, payload)?;
-        Self::CYCLES.put_some(message.cycles, payload)
-    };
     const LENGTHS: &'static [u8] = &[3, 4, 7];
 
     #[inline]
@@ -207,6 +193,22 @@ impl Layout for State {
             hours_h: Self::HOURS.get_some(data, length),
             cycles: Self::CYCLES.get_some(data, length),
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(3);
+        if self.allowed_percent.is_some() {
+            payload.end_after(4);
+        }
+        if self.hours_h.is_some() || self.cycles.is_some() {
+            payload.end_after(7);
+        }
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::PHASE.put(self.phase, payload)?;
+        Self::ALLOWED.put_some(self.allowed_percent, payload)?;
+        Self::HOURS.put_some(self.hours_h, payload)?;
+        Self::CYCLES.put_some(self.cycles, payload)
     }
 }
 
@@ -244,19 +246,21 @@ impl Limit {
 impl Layout for Limit {
     const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::RAMP];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(1);
-        if message.ramp_s.is_some() {
-            payload.end_after(2);
-        }
-        Self::CURRENT.put(message.current_a, payload)?;
-        Self::RAMP.put_some(message.ramp_s, payload)
-    };
     const LENGTHS: &'static [u8] = &[1, 2];
 
     #[inline]
     fn read_some(data: &Data, length: usize) -> Self {
         Self { current_a: Self::CURRENT.get(data), ramp_s: Self::RAMP.get_some(data, length) }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(1);
+        if self.ramp_s.is_some() {
+            payload.end_after(2);
+        }
+        Self::CURRENT.put(self.current_a, payload)?;
+        Self::RAMP.put_some(self.ramp_s, payload)
     }
 }
 

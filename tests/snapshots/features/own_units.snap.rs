@@ -179,10 +179,12 @@ impl Layout for SetDose {
     const SIGNALS: AnySignals = &[&Self::FLOW, &Self::WEIGHT];
     const DECODE: Decode<Self> =
         |data| Self { flow_l_per_min: Self::FLOW.decode(data), weight_kg: Self::WEIGHT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::FLOW.encode(message.flow_l_per_min, payload)?;
-        Self::WEIGHT.put(message.weight_kg, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::FLOW.encode(self.flow_l_per_min, payload)?;
+        Self::WEIGHT.put(self.weight_kg, payload)
+    }
 }
 
 /// Every message that a frame can carry.

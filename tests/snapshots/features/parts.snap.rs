@@ -172,7 +172,11 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::CELLS];
     const DECODE: Decode<Self> = |data| Self { cells: Self::CELLS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::CELLS.put(message.cells, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CELLS.put(self.cells, payload)
+    }
 }
 
 /// Voltages and groups of cells: `command` 0x02. Section 2.1.
@@ -250,10 +254,12 @@ impl CellsPart {
 impl Layout for CellsPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Cells {

@@ -236,10 +236,12 @@ impl LabelPart {
 impl Layout for LabelPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Label {

@@ -222,7 +222,11 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::STEPS];
     const DECODE: Decode<Self> = |data| Self { steps: Self::STEPS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::STEPS.put(message.steps, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::STEPS.put(self.steps, payload)
+    }
 }
 
 /// Temperatures that the oven goes through: `command` 0x02. Section 2.1.
@@ -311,10 +315,12 @@ impl ProgramPart {
 impl Layout for ProgramPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for Program {

@@ -870,12 +870,14 @@ impl Layout for PackValues {
         current_a: Self::CURRENT.decode(data),
         state_of_charge_percent: Self::STATE_OF_CHARGE.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CUMULATIVE_VOLTAGE.encode(message.cumulative_voltage_v, payload)?;
-        Self::GATHERED_VOLTAGE.encode(message.gathered_voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)?;
-        Self::STATE_OF_CHARGE.encode(message.state_of_charge_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CUMULATIVE_VOLTAGE.encode(self.cumulative_voltage_v, payload)?;
+        Self::GATHERED_VOLTAGE.encode(self.gathered_voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)?;
+        Self::STATE_OF_CHARGE.encode(self.state_of_charge_percent, payload)
+    }
 }
 
 /// Highest and lowest voltage of a cell: `command` 0x91. Section 5.2.
@@ -940,12 +942,14 @@ impl Layout for CellVoltageExtremes {
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.decode(data),
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MAXIMUM_VOLTAGE.encode(message.maximum_voltage_v, payload)?;
-        Self::MAXIMUM_CELL.put(message.maximum_cell, payload)?;
-        Self::MINIMUM_VOLTAGE.encode(message.minimum_voltage_v, payload)?;
-        Self::MINIMUM_CELL.put(message.minimum_cell, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
+        Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
+        Self::MINIMUM_VOLTAGE.encode(self.minimum_voltage_v, payload)?;
+        Self::MINIMUM_CELL.put(self.minimum_cell, payload)
+    }
 }
 
 /// Highest and lowest temperature: `command` 0x92. Section 5.3.
@@ -1016,12 +1020,14 @@ impl Layout for TemperatureExtremes {
         minimum_temperature_c: Self::MINIMUM_TEMPERATURE.decode(data),
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MAXIMUM_TEMPERATURE.encode(message.maximum_temperature_c, payload)?;
-        Self::MAXIMUM_CELL.put(message.maximum_cell, payload)?;
-        Self::MINIMUM_TEMPERATURE.encode(message.minimum_temperature_c, payload)?;
-        Self::MINIMUM_CELL.put(message.minimum_cell, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MAXIMUM_TEMPERATURE.encode(self.maximum_temperature_c, payload)?;
+        Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
+        Self::MINIMUM_TEMPERATURE.encode(self.minimum_temperature_c, payload)?;
+        Self::MINIMUM_CELL.put(self.minimum_cell, payload)
+    }
 }
 
 /// Charging and discharging, MOS, remaining capacity: `command` 0x93. Section 5.4.
@@ -1094,13 +1100,15 @@ impl Layout for ChargeState {
         life: Self::LIFE.get(data),
         remaining_capacity_ah: Self::REMAINING_CAPACITY.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::STATE.put(message.state, payload)?;
-        Self::CHARGE_MOS.put(message.charge_mos, payload)?;
-        Self::DISCHARGE_MOS.put(message.discharge_mos, payload)?;
-        Self::LIFE.put(message.life, payload)?;
-        Self::REMAINING_CAPACITY.encode(message.remaining_capacity_ah, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::STATE.put(self.state, payload)?;
+        Self::CHARGE_MOS.put(self.charge_mos, payload)?;
+        Self::DISCHARGE_MOS.put(self.discharge_mos, payload)?;
+        Self::LIFE.put(self.life, payload)?;
+        Self::REMAINING_CAPACITY.encode(self.remaining_capacity_ah, payload)
+    }
 }
 
 /// Numbers of cells and temperatures, connections, inputs and outputs: `command` 0x94. Section 5.5.
@@ -1159,13 +1167,15 @@ impl Layout for StatusInformation {
         load: Self::LOAD.get(data),
         inputs_outputs: Self::INPUTS_OUTPUTS.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CELL_COUNT.put(message.cell_count, payload)?;
-        Self::TEMPERATURE_COUNT.put(message.temperature_count, payload)?;
-        Self::CHARGER.put(message.charger, payload)?;
-        Self::LOAD.put(message.load, payload)?;
-        Self::INPUTS_OUTPUTS.put(message.inputs_outputs, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CELL_COUNT.put(self.cell_count, payload)?;
+        Self::TEMPERATURE_COUNT.put(self.temperature_count, payload)?;
+        Self::CHARGER.put(self.charger, payload)?;
+        Self::LOAD.put(self.load, payload)?;
+        Self::INPUTS_OUTPUTS.put(self.inputs_outputs, payload)
+    }
 }
 
 /// Voltages of the cells, three in each frame: `command` 0x95. Section 6.1, 6.2.
@@ -1227,12 +1237,14 @@ impl Layout for CellVoltages {
         part: Self::PART.get(data),
         voltage_v: [Self::VOLTAGE_1.decode(data), Self::VOLTAGE_2.decode(data), Self::VOLTAGE_3.decode(data)],
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::VOLTAGE_1.encode(message.voltage_v[0], payload)?;
-        Self::VOLTAGE_2.encode(message.voltage_v[1], payload)?;
-        Self::VOLTAGE_3.encode(message.voltage_v[2], payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::VOLTAGE_1.encode(self.voltage_v[0], payload)?;
+        Self::VOLTAGE_2.encode(self.voltage_v[1], payload)?;
+        Self::VOLTAGE_3.encode(self.voltage_v[2], payload)
+    }
 }
 
 /// Temperatures, seven in each frame: `command` 0x96. Section 7.1, 7.2.
@@ -1324,16 +1336,18 @@ impl Layout for Temperatures {
             Self::TEMPERATURE_7.decode(data),
         ],
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::TEMPERATURE_1.encode(message.temperature_c[0], payload)?;
-        Self::TEMPERATURE_2.encode(message.temperature_c[1], payload)?;
-        Self::TEMPERATURE_3.encode(message.temperature_c[2], payload)?;
-        Self::TEMPERATURE_4.encode(message.temperature_c[3], payload)?;
-        Self::TEMPERATURE_5.encode(message.temperature_c[4], payload)?;
-        Self::TEMPERATURE_6.encode(message.temperature_c[5], payload)?;
-        Self::TEMPERATURE_7.encode(message.temperature_c[6], payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::TEMPERATURE_1.encode(self.temperature_c[0], payload)?;
+        Self::TEMPERATURE_2.encode(self.temperature_c[1], payload)?;
+        Self::TEMPERATURE_3.encode(self.temperature_c[2], payload)?;
+        Self::TEMPERATURE_4.encode(self.temperature_c[3], payload)?;
+        Self::TEMPERATURE_5.encode(self.temperature_c[4], payload)?;
+        Self::TEMPERATURE_6.encode(self.temperature_c[5], payload)?;
+        Self::TEMPERATURE_7.encode(self.temperature_c[6], payload)
+    }
 }
 
 /// Balance of the cells: `command` 0x97. Section 5.6.
@@ -1366,7 +1380,11 @@ impl BalanceState {
 impl Layout for BalanceState {
     const SIGNALS: AnySignals = &[&Self::BALANCE];
     const DECODE: Decode<Self> = |data| Self { balance: Self::BALANCE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::BALANCE.put(message.balance, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::BALANCE.put(self.balance, payload)
+    }
 }
 
 /// Failures: `command` 0x98. Section 5.7.
@@ -1407,10 +1425,12 @@ impl Layout for FailureStatus {
     const SIGNALS: AnySignals = &[&Self::FAILURES, &Self::FAULT_CODE];
     const DECODE: Decode<Self> =
         |data| Self { failures: Self::FAILURES.get(data), fault_code: Self::FAULT_CODE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::FAILURES.put(message.failures, payload)?;
-        Self::FAULT_CODE.put(message.fault_code, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::FAILURES.put(self.failures, payload)?;
+        Self::FAULT_CODE.put(self.fault_code, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -1725,10 +1725,12 @@ impl Layout for Chm {
     const SIGNALS: AnySignals = &[&Self::VERSION_MINOR, &Self::VERSION_MAJOR];
     const DECODE: Decode<Self> =
         |data| Self { version_minor: Self::VERSION_MINOR.get(data), version_major: Self::VERSION_MAJOR.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VERSION_MINOR.put(message.version_minor, payload)?;
-        Self::VERSION_MAJOR.put(message.version_major, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VERSION_MINOR.put(self.version_minor, payload)?;
+        Self::VERSION_MAJOR.put(self.version_major, payload)
+    }
 }
 
 /// Vehicle handshake (BHM): `format` 0x27. Section 5.2.
@@ -1759,8 +1761,11 @@ impl Bhm {
 impl Layout for Bhm {
     const SIGNALS: AnySignals = &[&Self::MAXIMUM_VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8) };
-    const ENCODE: Encode<Self> =
-        |message, payload| Self::MAXIMUM_VOLTAGE.encode_some(message.maximum_voltage_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)
+    }
 }
 
 /// Recognition by the charger (CRM): `format` 0x01. Section 5.3.
@@ -1818,11 +1823,13 @@ impl Layout for Crm {
         charger_number: Self::CHARGER_NUMBER.get(data),
         area_code: Self::AREA_CODE.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::RESULT.put(message.result, payload)?;
-        Self::CHARGER_NUMBER.put(message.charger_number, payload)?;
-        Self::AREA_CODE.put(message.area_code, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::RESULT.put(self.result, payload)?;
+        Self::CHARGER_NUMBER.put(self.charger_number, payload)?;
+        Self::AREA_CODE.put(self.area_code, payload)
+    }
 }
 
 /// Recognition of the BMS and the vehicle (BRM): `format` 0x02. Section 5.4.
@@ -2284,14 +2291,16 @@ impl Layout for Cts {
         month: Self::MONTH.get_some(data, 8),
         year: Self::YEAR.get_some(data, 8),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SECOND.put_some(message.second, payload)?;
-        Self::MINUTE.put_some(message.minute, payload)?;
-        Self::HOUR.put_some(message.hour, payload)?;
-        Self::DAY.put_some(message.day, payload)?;
-        Self::MONTH.put_some(message.month, payload)?;
-        Self::YEAR.put_some(message.year, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SECOND.put_some(self.second, payload)?;
+        Self::MINUTE.put_some(self.minute, payload)?;
+        Self::HOUR.put_some(self.hour, payload)?;
+        Self::DAY.put_some(self.day, payload)?;
+        Self::MONTH.put_some(self.month, payload)?;
+        Self::YEAR.put_some(self.year, payload)
+    }
 }
 
 /// Greatest and least output of the charger (CML): `format` 0x08. Section 5.7.
@@ -2378,12 +2387,14 @@ impl Layout for Cml {
         maximum_current_a: Self::MAXIMUM_CURRENT.decode_some(data, 8),
         minimum_current_a: Self::MINIMUM_CURRENT.decode_some(data, 8),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MAXIMUM_VOLTAGE.encode_some(message.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.encode_some(message.minimum_voltage_v, payload)?;
-        Self::MAXIMUM_CURRENT.encode_some(message.maximum_current_a, payload)?;
-        Self::MINIMUM_CURRENT.encode_some(message.minimum_current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)?;
+        Self::MINIMUM_VOLTAGE.encode_some(self.minimum_voltage_v, payload)?;
+        Self::MAXIMUM_CURRENT.encode_some(self.maximum_current_a, payload)?;
+        Self::MINIMUM_CURRENT.encode_some(self.minimum_current_a, payload)
+    }
 }
 
 /// Whether the BMS is ready to charge (BRO): `format` 0x09. Section 5.8.
@@ -2410,7 +2421,11 @@ impl Bro {
 impl Layout for Bro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::READINESS.put(message.readiness, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::READINESS.put(self.readiness, payload)
+    }
 }
 
 /// Whether the charger is ready to charge (CRO): `format` 0x0A. Section 5.9.
@@ -2445,7 +2460,11 @@ impl Cro {
 impl Layout for Cro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::READINESS.put(message.readiness, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::READINESS.put(self.readiness, payload)
+    }
 }
 
 /// What the BMS demands (BCL): `format` 0x10. Section 5.10, 8.1.
@@ -2498,11 +2517,13 @@ impl Layout for Bcl {
         current_a: Self::CURRENT.decode_some(data, 8),
         mode: Self::MODE.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode_some(message.voltage_v, payload)?;
-        Self::CURRENT.encode_some(message.current_a, payload)?;
-        Self::MODE.put(message.mode, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
+        Self::CURRENT.encode_some(self.current_a, payload)?;
+        Self::MODE.put(self.mode, payload)
+    }
 }
 
 /// State of the charging (BCS): `format` 0x11. Section 5.11.
@@ -2702,17 +2723,6 @@ impl Layout for Ccs {
     const SIGNALS: AnySignals =
         &[&Self::OUTPUT_VOLTAGE, &Self::OUTPUT_CURRENT, &Self::CHARGING_TIME, &Self::PERMISSION, &Self::BYTE_8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(7);
-        if message.byte_8.is_some() {
-            payload.end_after(8);
-        }
-        Self::OUTPUT_VOLTAGE.encode_some(message.output_voltage_v, payload)?;
-        Self::OUTPUT_CURRENT.encode_some(message.output_current_a, payload)?;
-        Self::CHARGING_TIME.put_some(message.charging_time_min, payload)?;
-        Self::PERMISSION.put(message.permission, payload)?;
-        Self::BYTE_8.put_some(message.byte_8, payload)
-    };
     const LENGTHS: &'static [u8] = &[7, 8];
 
     #[inline]
@@ -2724,6 +2734,19 @@ impl Layout for Ccs {
             permission: Self::PERMISSION.get(data),
             byte_8: Self::BYTE_8.get_some(data, length),
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(7);
+        if self.byte_8.is_some() {
+            payload.end_after(8);
+        }
+        Self::OUTPUT_VOLTAGE.encode_some(self.output_voltage_v, payload)?;
+        Self::OUTPUT_CURRENT.encode_some(self.output_current_a, payload)?;
+        Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
+        Self::PERMISSION.put(self.permission, payload)?;
+        Self::BYTE_8.put_some(self.byte_8, payload)
     }
 }
 
@@ -2876,20 +2899,22 @@ impl Layout for Bsm {
         connector_state: Self::CONNECTOR_STATE.get(data),
         permission: Self::PERMISSION.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::HIGHEST_CELL.encode(message.highest_cell, payload)?;
-        Self::HIGHEST_TEMPERATURE.encode_some(message.highest_temperature_c, payload)?;
-        Self::HIGHEST_TEMPERATURE_POINT.encode_some(message.highest_temperature_point, payload)?;
-        Self::LOWEST_TEMPERATURE.encode_some(message.lowest_temperature_c, payload)?;
-        Self::LOWEST_TEMPERATURE_POINT.encode_some(message.lowest_temperature_point, payload)?;
-        Self::CELL_VOLTAGE_STATE.put(message.cell_voltage_state, payload)?;
-        Self::SOC_STATE.put(message.soc_state, payload)?;
-        Self::OVERCURRENT_STATE.put(message.overcurrent_state, payload)?;
-        Self::TEMPERATURE_STATE.put(message.temperature_state, payload)?;
-        Self::INSULATION_STATE.put(message.insulation_state, payload)?;
-        Self::CONNECTOR_STATE.put(message.connector_state, payload)?;
-        Self::PERMISSION.put(message.permission, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::HIGHEST_CELL.encode(self.highest_cell, payload)?;
+        Self::HIGHEST_TEMPERATURE.encode_some(self.highest_temperature_c, payload)?;
+        Self::HIGHEST_TEMPERATURE_POINT.encode_some(self.highest_temperature_point, payload)?;
+        Self::LOWEST_TEMPERATURE.encode_some(self.lowest_temperature_c, payload)?;
+        Self::LOWEST_TEMPERATURE_POINT.encode_some(self.lowest_temperature_point, payload)?;
+        Self::CELL_VOLTAGE_STATE.put(self.cell_voltage_state, payload)?;
+        Self::SOC_STATE.put(self.soc_state, payload)?;
+        Self::OVERCURRENT_STATE.put(self.overcurrent_state, payload)?;
+        Self::TEMPERATURE_STATE.put(self.temperature_state, payload)?;
+        Self::INSULATION_STATE.put(self.insulation_state, payload)?;
+        Self::CONNECTOR_STATE.put(self.connector_state, payload)?;
+        Self::PERMISSION.put(self.permission, payload)
+    }
 }
 
 /// Voltages of the cells (BMV): `format` 0x15. Section 4, 5.14.
@@ -3017,26 +3042,6 @@ impl Layout for BmvFrame {
         &Self::CELL_GROUP_4,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(2);
-        if message.cell_voltage_v[1].is_some() || message.cell_group[1].is_some() {
-            payload.end_after(4);
-        }
-        if message.cell_voltage_v[2].is_some() || message.cell_group[2].is_some() {
-            payload.end_after(6);
-        }
-        if message.cell_voltage_v[3].is_some() || message.cell_group[3].is_some() {
-            payload.end_after(8);
-        }
-        Self::CELL_VOLTAGE_1.encode_some(message.cell_voltage_v[0], payload)?;
-        Self::CELL_VOLTAGE_2.encode_some(message.cell_voltage_v[1], payload)?;
-        Self::CELL_VOLTAGE_3.encode_some(message.cell_voltage_v[2], payload)?;
-        Self::CELL_VOLTAGE_4.encode_some(message.cell_voltage_v[3], payload)?;
-        Self::CELL_GROUP_1.put_some(message.cell_group[0], payload)?;
-        Self::CELL_GROUP_2.put_some(message.cell_group[1], payload)?;
-        Self::CELL_GROUP_3.put_some(message.cell_group[2], payload)?;
-        Self::CELL_GROUP_4.put_some(message.cell_group[3], payload)
-    };
     const LENGTHS: &'static [u8] = &[2, 4, 6, 8];
 
     #[inline]
@@ -3055,6 +3060,28 @@ impl Layout for BmvFrame {
                 Self::CELL_GROUP_4.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(2);
+        if self.cell_voltage_v[1].is_some() || self.cell_group[1].is_some() {
+            payload.end_after(4);
+        }
+        if self.cell_voltage_v[2].is_some() || self.cell_group[2].is_some() {
+            payload.end_after(6);
+        }
+        if self.cell_voltage_v[3].is_some() || self.cell_group[3].is_some() {
+            payload.end_after(8);
+        }
+        Self::CELL_VOLTAGE_1.encode_some(self.cell_voltage_v[0], payload)?;
+        Self::CELL_VOLTAGE_2.encode_some(self.cell_voltage_v[1], payload)?;
+        Self::CELL_VOLTAGE_3.encode_some(self.cell_voltage_v[2], payload)?;
+        Self::CELL_VOLTAGE_4.encode_some(self.cell_voltage_v[3], payload)?;
+        Self::CELL_GROUP_1.put_some(self.cell_group[0], payload)?;
+        Self::CELL_GROUP_2.put_some(self.cell_group[1], payload)?;
+        Self::CELL_GROUP_3.put_some(self.cell_group[2], payload)?;
+        Self::CELL_GROUP_4.put_some(self.cell_group[3], payload)
     }
 }
 
@@ -3190,38 +3217,6 @@ impl Layout for BmtFrame {
         &Self::TEMPERATURE_8,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(1);
-        if message.temperature_c[1].is_some() || payload.had(2) {
-            payload.end_after(2);
-        }
-        if message.temperature_c[2].is_some() || payload.had(3) {
-            payload.end_after(3);
-        }
-        if message.temperature_c[3].is_some() || payload.had(4) {
-            payload.end_after(4);
-        }
-        if message.temperature_c[4].is_some() || payload.had(5) {
-            payload.end_after(5);
-        }
-        if message.temperature_c[5].is_some() || payload.had(6) {
-            payload.end_after(6);
-        }
-        if message.temperature_c[6].is_some() || payload.had(7) {
-            payload.end_after(7);
-        }
-        if message.temperature_c[7].is_some() || payload.had(8) {
-            payload.end_after(8);
-        }
-        Self::TEMPERATURE_1.encode_some(message.temperature_c[0], payload)?;
-        Self::TEMPERATURE_2.encode_some(message.temperature_c[1], payload)?;
-        Self::TEMPERATURE_3.encode_some(message.temperature_c[2], payload)?;
-        Self::TEMPERATURE_4.encode_some(message.temperature_c[3], payload)?;
-        Self::TEMPERATURE_5.encode_some(message.temperature_c[4], payload)?;
-        Self::TEMPERATURE_6.encode_some(message.temperature_c[5], payload)?;
-        Self::TEMPERATURE_7.encode_some(message.temperature_c[6], payload)?;
-        Self::TEMPERATURE_8.encode_some(message.temperature_c[7], payload)
-    };
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
     #[inline]
@@ -3238,6 +3233,40 @@ impl Layout for BmtFrame {
                 Self::TEMPERATURE_8.decode_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(1);
+        if self.temperature_c[1].is_some() || payload.had(2) {
+            payload.end_after(2);
+        }
+        if self.temperature_c[2].is_some() || payload.had(3) {
+            payload.end_after(3);
+        }
+        if self.temperature_c[3].is_some() || payload.had(4) {
+            payload.end_after(4);
+        }
+        if self.temperature_c[4].is_some() || payload.had(5) {
+            payload.end_after(5);
+        }
+        if self.temperature_c[5].is_some() || payload.had(6) {
+            payload.end_after(6);
+        }
+        if self.temperature_c[6].is_some() || payload.had(7) {
+            payload.end_after(7);
+        }
+        if self.temperature_c[7].is_some() || payload.had(8) {
+            payload.end_after(8);
+        }
+        Self::TEMPERATURE_1.encode_some(self.temperature_c[0], payload)?;
+        Self::TEMPERATURE_2.encode_some(self.temperature_c[1], payload)?;
+        Self::TEMPERATURE_3.encode_some(self.temperature_c[2], payload)?;
+        Self::TEMPERATURE_4.encode_some(self.temperature_c[3], payload)?;
+        Self::TEMPERATURE_5.encode_some(self.temperature_c[4], payload)?;
+        Self::TEMPERATURE_6.encode_some(self.temperature_c[5], payload)?;
+        Self::TEMPERATURE_7.encode_some(self.temperature_c[6], payload)?;
+        Self::TEMPERATURE_8.encode_some(self.temperature_c[7], payload)
     }
 }
 
@@ -3323,38 +3352,6 @@ impl Layout for BspFrame {
         &Self::RESERVED_8,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(1);
-        if message.reserved[1].is_some() {
-            payload.end_after(2);
-        }
-        if message.reserved[2].is_some() {
-            payload.end_after(3);
-        }
-        if message.reserved[3].is_some() {
-            payload.end_after(4);
-        }
-        if message.reserved[4].is_some() {
-            payload.end_after(5);
-        }
-        if message.reserved[5].is_some() {
-            payload.end_after(6);
-        }
-        if message.reserved[6].is_some() {
-            payload.end_after(7);
-        }
-        if message.reserved[7].is_some() {
-            payload.end_after(8);
-        }
-        Self::RESERVED_1.put_some(message.reserved[0], payload)?;
-        Self::RESERVED_2.put_some(message.reserved[1], payload)?;
-        Self::RESERVED_3.put_some(message.reserved[2], payload)?;
-        Self::RESERVED_4.put_some(message.reserved[3], payload)?;
-        Self::RESERVED_5.put_some(message.reserved[4], payload)?;
-        Self::RESERVED_6.put_some(message.reserved[5], payload)?;
-        Self::RESERVED_7.put_some(message.reserved[6], payload)?;
-        Self::RESERVED_8.put_some(message.reserved[7], payload)
-    };
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
     #[inline]
@@ -3371,6 +3368,40 @@ impl Layout for BspFrame {
                 Self::RESERVED_8.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(1);
+        if self.reserved[1].is_some() {
+            payload.end_after(2);
+        }
+        if self.reserved[2].is_some() {
+            payload.end_after(3);
+        }
+        if self.reserved[3].is_some() {
+            payload.end_after(4);
+        }
+        if self.reserved[4].is_some() {
+            payload.end_after(5);
+        }
+        if self.reserved[5].is_some() {
+            payload.end_after(6);
+        }
+        if self.reserved[6].is_some() {
+            payload.end_after(7);
+        }
+        if self.reserved[7].is_some() {
+            payload.end_after(8);
+        }
+        Self::RESERVED_1.put_some(self.reserved[0], payload)?;
+        Self::RESERVED_2.put_some(self.reserved[1], payload)?;
+        Self::RESERVED_3.put_some(self.reserved[2], payload)?;
+        Self::RESERVED_4.put_some(self.reserved[3], payload)?;
+        Self::RESERVED_5.put_some(self.reserved[4], payload)?;
+        Self::RESERVED_6.put_some(self.reserved[5], payload)?;
+        Self::RESERVED_7.put_some(self.reserved[6], payload)?;
+        Self::RESERVED_8.put_some(self.reserved[7], payload)
     }
 }
 
@@ -3523,22 +3554,24 @@ impl Layout for Bst {
         current: Self::CURRENT.get(data),
         voltage: Self::VOLTAGE.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::TARGET_SOC.put(message.target_soc, payload)?;
-        Self::TOTAL_VOLTAGE.put(message.total_voltage, payload)?;
-        Self::CELL_VOLTAGE.put(message.cell_voltage, payload)?;
-        Self::CHARGER_STOPPED.put(message.charger_stopped, payload)?;
-        Self::INSULATION.put(message.insulation, payload)?;
-        Self::CONNECTOR_OVERTEMPERATURE.put(message.connector_overtemperature, payload)?;
-        Self::COMPONENT_OVERTEMPERATURE.put(message.component_overtemperature, payload)?;
-        Self::CONNECTOR.put(message.connector, payload)?;
-        Self::PACK_OVERTEMPERATURE.put(message.pack_overtemperature, payload)?;
-        Self::RELAY.put(message.relay, payload)?;
-        Self::DETECTION_POINT_2.put(message.detection_point_2, payload)?;
-        Self::OTHER.put(message.other, payload)?;
-        Self::CURRENT.put(message.current, payload)?;
-        Self::VOLTAGE.put(message.voltage, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::TARGET_SOC.put(self.target_soc, payload)?;
+        Self::TOTAL_VOLTAGE.put(self.total_voltage, payload)?;
+        Self::CELL_VOLTAGE.put(self.cell_voltage, payload)?;
+        Self::CHARGER_STOPPED.put(self.charger_stopped, payload)?;
+        Self::INSULATION.put(self.insulation, payload)?;
+        Self::CONNECTOR_OVERTEMPERATURE.put(self.connector_overtemperature, payload)?;
+        Self::COMPONENT_OVERTEMPERATURE.put(self.component_overtemperature, payload)?;
+        Self::CONNECTOR.put(self.connector, payload)?;
+        Self::PACK_OVERTEMPERATURE.put(self.pack_overtemperature, payload)?;
+        Self::RELAY.put(self.relay, payload)?;
+        Self::DETECTION_POINT_2.put(self.detection_point_2, payload)?;
+        Self::OTHER.put(self.other, payload)?;
+        Self::CURRENT.put(self.current, payload)?;
+        Self::VOLTAGE.put(self.voltage, payload)
+    }
 }
 
 /// The charger stops the charging (CST): `format` 0x1A. Section 5.18.
@@ -3685,20 +3718,22 @@ impl Layout for Cst {
         current: Self::CURRENT.get(data),
         voltage: Self::VOLTAGE.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CONDITION_REACHED.put(message.condition_reached, payload)?;
-        Self::MANUAL_STOP.put(message.manual_stop, payload)?;
-        Self::FAULT_STOP.put(message.fault_stop, payload)?;
-        Self::BMS_STOPPED.put(message.bms_stopped, payload)?;
-        Self::CHARGER_OVERTEMPERATURE.put(message.charger_overtemperature, payload)?;
-        Self::CONNECTOR.put(message.connector, payload)?;
-        Self::INTERNAL_OVERTEMPERATURE.put(message.internal_overtemperature, payload)?;
-        Self::ENERGY_TRANSFER.put(message.energy_transfer, payload)?;
-        Self::EMERGENCY_STOP.put(message.emergency_stop, payload)?;
-        Self::OTHER.put(message.other, payload)?;
-        Self::CURRENT.put(message.current, payload)?;
-        Self::VOLTAGE.put(message.voltage, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CONDITION_REACHED.put(self.condition_reached, payload)?;
+        Self::MANUAL_STOP.put(self.manual_stop, payload)?;
+        Self::FAULT_STOP.put(self.fault_stop, payload)?;
+        Self::BMS_STOPPED.put(self.bms_stopped, payload)?;
+        Self::CHARGER_OVERTEMPERATURE.put(self.charger_overtemperature, payload)?;
+        Self::CONNECTOR.put(self.connector, payload)?;
+        Self::INTERNAL_OVERTEMPERATURE.put(self.internal_overtemperature, payload)?;
+        Self::ENERGY_TRANSFER.put(self.energy_transfer, payload)?;
+        Self::EMERGENCY_STOP.put(self.emergency_stop, payload)?;
+        Self::OTHER.put(self.other, payload)?;
+        Self::CURRENT.put(self.current, payload)?;
+        Self::VOLTAGE.put(self.voltage, payload)
+    }
 }
 
 /// Statistics of the BMS (BSD): `format` 0x1C. Section 5.19.
@@ -3787,13 +3822,15 @@ impl Layout for Bsd {
         lowest_temperature_c: Self::LOWEST_TEMPERATURE.decode_some(data, 8),
         highest_temperature_c: Self::HIGHEST_TEMPERATURE.decode_some(data, 8),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::STATE_OF_CHARGE.put_some(message.state_of_charge_percent, payload)?;
-        Self::LOWEST_CELL_VOLTAGE.encode_some(message.lowest_cell_voltage_v, payload)?;
-        Self::HIGHEST_CELL_VOLTAGE.encode_some(message.highest_cell_voltage_v, payload)?;
-        Self::LOWEST_TEMPERATURE.encode_some(message.lowest_temperature_c, payload)?;
-        Self::HIGHEST_TEMPERATURE.encode_some(message.highest_temperature_c, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::STATE_OF_CHARGE.put_some(self.state_of_charge_percent, payload)?;
+        Self::LOWEST_CELL_VOLTAGE.encode_some(self.lowest_cell_voltage_v, payload)?;
+        Self::HIGHEST_CELL_VOLTAGE.encode_some(self.highest_cell_voltage_v, payload)?;
+        Self::LOWEST_TEMPERATURE.encode_some(self.lowest_temperature_c, payload)?;
+        Self::HIGHEST_TEMPERATURE.encode_some(self.highest_temperature_c, payload)
+    }
 }
 
 /// Statistics of the charger (CSD): `format` 0x1D. Section 5.20.
@@ -3856,11 +3893,13 @@ impl Layout for Csd {
         output_energy_wh: Self::OUTPUT_ENERGY.decode_some(data, 8),
         charger_number: Self::CHARGER_NUMBER.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CHARGING_TIME.put_some(message.charging_time_min, payload)?;
-        Self::OUTPUT_ENERGY.encode_some(message.output_energy_wh, payload)?;
-        Self::CHARGER_NUMBER.put(message.charger_number, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
+        Self::OUTPUT_ENERGY.encode_some(self.output_energy_wh, payload)?;
+        Self::CHARGER_NUMBER.put(self.charger_number, payload)
+    }
 }
 
 /// What the BMS waited for in vain (BEM): `format` 0x1E. Section 5.21.
@@ -3949,15 +3988,17 @@ impl Layout for Bem {
         cst: Self::CST.get(data),
         csd: Self::CSD.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CRM_NOT_RECOGNISED.put(message.crm_not_recognised, payload)?;
-        Self::CRM_RECOGNISED.put(message.crm_recognised, payload)?;
-        Self::CTS_AND_CML.put(message.cts_and_cml, payload)?;
-        Self::CRO.put(message.cro, payload)?;
-        Self::CCS.put(message.ccs, payload)?;
-        Self::CST.put(message.cst, payload)?;
-        Self::CSD.put(message.csd, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CRM_NOT_RECOGNISED.put(self.crm_not_recognised, payload)?;
+        Self::CRM_RECOGNISED.put(self.crm_recognised, payload)?;
+        Self::CTS_AND_CML.put(self.cts_and_cml, payload)?;
+        Self::CRO.put(self.cro, payload)?;
+        Self::CCS.put(self.ccs, payload)?;
+        Self::CST.put(self.cst, payload)?;
+        Self::CSD.put(self.csd, payload)
+    }
 }
 
 /// What the charger waited for in vain (CEM): `format` 0x1F. Section 5.22.
@@ -4043,15 +4084,17 @@ impl Layout for Cem {
         bst: Self::BST.get(data),
         bsd: Self::BSD.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::BRM.put(message.brm, payload)?;
-        Self::BCP.put(message.bcp, payload)?;
-        Self::BRO.put(message.bro, payload)?;
-        Self::BCS.put(message.bcs, payload)?;
-        Self::BCL.put(message.bcl, payload)?;
-        Self::BST.put(message.bst, payload)?;
-        Self::BSD.put(message.bsd, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::BRM.put(self.brm, payload)?;
+        Self::BCP.put(self.bcp, payload)?;
+        Self::BRO.put(self.bro, payload)?;
+        Self::BCS.put(self.bcs, payload)?;
+        Self::BCL.put(self.bcl, payload)?;
+        Self::BST.put(self.bst, payload)?;
+        Self::BSD.put(self.bsd, payload)
+    }
 }
 
 /// Current trouble codes (DM1): `format` 0x20. Section 6.1, 6.2.
@@ -4230,27 +4273,6 @@ impl Layout for Dm1Frame {
         &Self::CODE_CONVERSION_2,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(4);
-        if message.code_spn_low[1].is_some()
-            || message.code_fmi[1].is_some()
-            || message.code_spn_high[1].is_some()
-            || message.code_occurrence[1].is_some()
-            || message.code_conversion[1].is_some()
-        {
-            payload.end_after(8);
-        }
-        Self::CODE_SPN_LOW_1.put_some(message.code_spn_low[0], payload)?;
-        Self::CODE_SPN_LOW_2.put_some(message.code_spn_low[1], payload)?;
-        Self::CODE_FMI_1.put_some(message.code_fmi[0], payload)?;
-        Self::CODE_FMI_2.put_some(message.code_fmi[1], payload)?;
-        Self::CODE_SPN_HIGH_1.put_some(message.code_spn_high[0], payload)?;
-        Self::CODE_SPN_HIGH_2.put_some(message.code_spn_high[1], payload)?;
-        Self::CODE_OCCURRENCE_1.put_some(message.code_occurrence[0], payload)?;
-        Self::CODE_OCCURRENCE_2.put_some(message.code_occurrence[1], payload)?;
-        Self::CODE_CONVERSION_1.put_some(message.code_conversion[0], payload)?;
-        Self::CODE_CONVERSION_2.put_some(message.code_conversion[1], payload)
-    };
     const LENGTHS: &'static [u8] = &[4, 8];
 
     #[inline]
@@ -4268,6 +4290,29 @@ impl Layout for Dm1Frame {
                 Self::CODE_CONVERSION_2.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(4);
+        if self.code_spn_low[1].is_some()
+            || self.code_fmi[1].is_some()
+            || self.code_spn_high[1].is_some()
+            || self.code_occurrence[1].is_some()
+            || self.code_conversion[1].is_some()
+        {
+            payload.end_after(8);
+        }
+        Self::CODE_SPN_LOW_1.put_some(self.code_spn_low[0], payload)?;
+        Self::CODE_SPN_LOW_2.put_some(self.code_spn_low[1], payload)?;
+        Self::CODE_FMI_1.put_some(self.code_fmi[0], payload)?;
+        Self::CODE_FMI_2.put_some(self.code_fmi[1], payload)?;
+        Self::CODE_SPN_HIGH_1.put_some(self.code_spn_high[0], payload)?;
+        Self::CODE_SPN_HIGH_2.put_some(self.code_spn_high[1], payload)?;
+        Self::CODE_OCCURRENCE_1.put_some(self.code_occurrence[0], payload)?;
+        Self::CODE_OCCURRENCE_2.put_some(self.code_occurrence[1], payload)?;
+        Self::CODE_CONVERSION_1.put_some(self.code_conversion[0], payload)?;
+        Self::CODE_CONVERSION_2.put_some(self.code_conversion[1], payload)
     }
 }
 
@@ -4447,27 +4492,6 @@ impl Layout for Dm2Frame {
         &Self::CODE_CONVERSION_2,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(4);
-        if message.code_spn_low[1].is_some()
-            || message.code_fmi[1].is_some()
-            || message.code_spn_high[1].is_some()
-            || message.code_occurrence[1].is_some()
-            || message.code_conversion[1].is_some()
-        {
-            payload.end_after(8);
-        }
-        Self::CODE_SPN_LOW_1.put_some(message.code_spn_low[0], payload)?;
-        Self::CODE_SPN_LOW_2.put_some(message.code_spn_low[1], payload)?;
-        Self::CODE_FMI_1.put_some(message.code_fmi[0], payload)?;
-        Self::CODE_FMI_2.put_some(message.code_fmi[1], payload)?;
-        Self::CODE_SPN_HIGH_1.put_some(message.code_spn_high[0], payload)?;
-        Self::CODE_SPN_HIGH_2.put_some(message.code_spn_high[1], payload)?;
-        Self::CODE_OCCURRENCE_1.put_some(message.code_occurrence[0], payload)?;
-        Self::CODE_OCCURRENCE_2.put_some(message.code_occurrence[1], payload)?;
-        Self::CODE_CONVERSION_1.put_some(message.code_conversion[0], payload)?;
-        Self::CODE_CONVERSION_2.put_some(message.code_conversion[1], payload)
-    };
     const LENGTHS: &'static [u8] = &[4, 8];
 
     #[inline]
@@ -4485,6 +4509,29 @@ impl Layout for Dm2Frame {
                 Self::CODE_CONVERSION_2.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(4);
+        if self.code_spn_low[1].is_some()
+            || self.code_fmi[1].is_some()
+            || self.code_spn_high[1].is_some()
+            || self.code_occurrence[1].is_some()
+            || self.code_conversion[1].is_some()
+        {
+            payload.end_after(8);
+        }
+        Self::CODE_SPN_LOW_1.put_some(self.code_spn_low[0], payload)?;
+        Self::CODE_SPN_LOW_2.put_some(self.code_spn_low[1], payload)?;
+        Self::CODE_FMI_1.put_some(self.code_fmi[0], payload)?;
+        Self::CODE_FMI_2.put_some(self.code_fmi[1], payload)?;
+        Self::CODE_SPN_HIGH_1.put_some(self.code_spn_high[0], payload)?;
+        Self::CODE_SPN_HIGH_2.put_some(self.code_spn_high[1], payload)?;
+        Self::CODE_OCCURRENCE_1.put_some(self.code_occurrence[0], payload)?;
+        Self::CODE_OCCURRENCE_2.put_some(self.code_occurrence[1], payload)?;
+        Self::CODE_CONVERSION_1.put_some(self.code_conversion[0], payload)?;
+        Self::CODE_CONVERSION_2.put_some(self.code_conversion[1], payload)
     }
 }
 
@@ -4522,7 +4569,11 @@ impl Dm3 {
 impl Layout for Dm3 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Clear or reset the current trouble codes (DM4): `format` 0x23. Section 6.1.
@@ -4677,38 +4728,6 @@ impl Layout for Dm6Frame {
         &Self::DATA_8,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(1);
-        if message.data[1].is_some() {
-            payload.end_after(2);
-        }
-        if message.data[2].is_some() {
-            payload.end_after(3);
-        }
-        if message.data[3].is_some() {
-            payload.end_after(4);
-        }
-        if message.data[4].is_some() {
-            payload.end_after(5);
-        }
-        if message.data[5].is_some() {
-            payload.end_after(6);
-        }
-        if message.data[6].is_some() {
-            payload.end_after(7);
-        }
-        if message.data[7].is_some() {
-            payload.end_after(8);
-        }
-        Self::DATA_1.put_some(message.data[0], payload)?;
-        Self::DATA_2.put_some(message.data[1], payload)?;
-        Self::DATA_3.put_some(message.data[2], payload)?;
-        Self::DATA_4.put_some(message.data[3], payload)?;
-        Self::DATA_5.put_some(message.data[4], payload)?;
-        Self::DATA_6.put_some(message.data[5], payload)?;
-        Self::DATA_7.put_some(message.data[6], payload)?;
-        Self::DATA_8.put_some(message.data[7], payload)
-    };
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
     #[inline]
@@ -4725,6 +4744,40 @@ impl Layout for Dm6Frame {
                 Self::DATA_8.get_some(data, length),
             ],
         }
+    }
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(1);
+        if self.data[1].is_some() {
+            payload.end_after(2);
+        }
+        if self.data[2].is_some() {
+            payload.end_after(3);
+        }
+        if self.data[3].is_some() {
+            payload.end_after(4);
+        }
+        if self.data[4].is_some() {
+            payload.end_after(5);
+        }
+        if self.data[5].is_some() {
+            payload.end_after(6);
+        }
+        if self.data[6].is_some() {
+            payload.end_after(7);
+        }
+        if self.data[7].is_some() {
+            payload.end_after(8);
+        }
+        Self::DATA_1.put_some(self.data[0], payload)?;
+        Self::DATA_2.put_some(self.data[1], payload)?;
+        Self::DATA_3.put_some(self.data[2], payload)?;
+        Self::DATA_4.put_some(self.data[3], payload)?;
+        Self::DATA_5.put_some(self.data[4], payload)?;
+        Self::DATA_6.put_some(self.data[5], payload)?;
+        Self::DATA_7.put_some(self.data[6], payload)?;
+        Self::DATA_8.put_some(self.data[7], payload)
     }
 }
 
@@ -4760,7 +4813,11 @@ impl Rqst {
 impl Layout for Rqst {
     const SIGNALS: AnySignals = &[&Self::PGN];
     const DECODE: Decode<Self> = |data| Self { pgn: Self::PGN.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::PGN.put(message.pgn, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PGN.put(self.pgn, payload)
+    }
 }
 
 /// Acknowledgment (ACKM): `format` 0xE8. Section 6.1, 6.4.
@@ -4811,11 +4868,13 @@ impl Layout for Ackm {
         group_function: Self::GROUP_FUNCTION.get_some(data, 8),
         pgn: Self::PGN.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CONTROL.put(message.control, payload)?;
-        Self::GROUP_FUNCTION.put_some(message.group_function, payload)?;
-        Self::PGN.put(message.pgn, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CONTROL.put(self.control, payload)?;
+        Self::GROUP_FUNCTION.put_some(self.group_function, payload)?;
+        Self::PGN.put(self.pgn, payload)
+    }
 }
 
 /// Announcement of a long message to one node: `format` 0xEC, `control` 0x10. Section 7.
@@ -4870,12 +4929,14 @@ impl Layout for TpRequestToSend {
         most: Self::MOST.get(data),
         group: Self::GROUP.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::MOST.put(message.most, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::MOST.put(self.most, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Permission to send some packets: `format` 0xEC, `control` 0x11. Section 7.
@@ -4927,11 +4988,13 @@ impl Layout for TpClearToSend {
     const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::NEXT.put(message.next, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::NEXT.put(self.next, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Receipt of all packets: `format` 0xEC, `control` 0x13. Section 7.
@@ -4980,11 +5043,13 @@ impl Layout for TpEndOfMessage {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Announcement of a long message to all nodes: `format` 0xEC, `control` 0x20. Section 7.
@@ -5037,11 +5102,13 @@ impl Layout for TpBroadcast {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// End of a transfer before its time: `format` 0xEC, `control` 0xFF. Section 7.
@@ -5086,10 +5153,12 @@ impl TpAbort {
 impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::REASON.put(message.reason, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::REASON.put(self.reason, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Packet of a long message: `format` 0xEB. Section 7.
@@ -5129,10 +5198,12 @@ impl TpData {
 impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::NUMBER.put(message.number, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::NUMBER.put(self.number, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 /// Transport of messages of more than 8 bytes. Section 7.

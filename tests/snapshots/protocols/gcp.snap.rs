@@ -1062,10 +1062,12 @@ impl SystemOutput {
 impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.put(message.voltage_v, payload)?;
-        Self::CURRENT.put(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_v, payload)?;
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Number of modules in the system or in a group: `command` 0x02. Section 3.3.
@@ -1101,7 +1103,11 @@ impl ModuleCount {
 impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::COUNT.put(self.count, payload)
+    }
 }
 
 /// Output voltage and current of one module: `command` 0x03. Section 3.3.
@@ -1142,10 +1148,12 @@ impl ModuleOutput {
 impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.put(message.voltage_v, payload)?;
-        Self::CURRENT.put(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_v, payload)?;
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Group, temperature and status of one module: `command` 0x04. Section 3.3.
@@ -1210,13 +1218,15 @@ impl Layout for ModuleStatus {
         status_1: Self::STATUS_1.get(data),
         status_0: Self::STATUS_0.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::GROUP.put(message.group, payload)?;
-        Self::TEMPERATURE.put(message.temperature_c, payload)?;
-        Self::STATUS_2.put(message.status_2, payload)?;
-        Self::STATUS_1.put(message.status_1, payload)?;
-        Self::STATUS_0.put(message.status_0, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)?;
+        Self::TEMPERATURE.put(self.temperature_c, payload)?;
+        Self::STATUS_2.put(self.status_2, payload)?;
+        Self::STATUS_1.put(self.status_1, payload)?;
+        Self::STATUS_0.put(self.status_0, payload)
+    }
 }
 
 /// Line-to-line AC input voltages of one module: `command` 0x06. Section 3.3.
@@ -1276,11 +1286,13 @@ impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::AB.encode(message.ab_v, payload)?;
-        Self::BC.encode(message.bc_v, payload)?;
-        Self::CA.encode(message.ca_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::AB.encode(self.ab_v, payload)?;
+        Self::BC.encode(self.bc_v, payload)?;
+        Self::CA.encode(self.ca_v, payload)
+    }
 }
 
 /// DC input voltages of one module: `command` 0x06. Section 3.3.
@@ -1343,11 +1355,13 @@ impl Layout for InputVoltageDc {
         plus_pe_v: Self::PLUS_PE.decode(data),
         minus_pe_v: Self::MINUS_PE.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PLUS_MINUS.encode(message.plus_minus_v, payload)?;
-        Self::PLUS_PE.encode(message.plus_pe_v, payload)?;
-        Self::MINUS_PE.encode(message.minus_pe_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PLUS_MINUS.encode(self.plus_minus_v, payload)?;
+        Self::PLUS_PE.encode(self.plus_pe_v, payload)?;
+        Self::MINUS_PE.encode(self.minus_pe_v, payload)
+    }
 }
 
 /// External voltage of one module and the current that the module can deliver: `command` 0x0C. Section
@@ -1396,10 +1410,12 @@ impl Layout for ExternalVoltage {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::ALLOWED_CURRENT.encode(message.allowed_current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
+    }
 }
 
 /// Limit the input current of AC/DC modules: `command` 0x0F, `sub_command` 0x1205. Section 3.3.
@@ -1457,7 +1473,11 @@ impl Within<LimitInputCurrent> {
 impl Layout for LimitInputCurrent {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.put(message.current_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Set the DC input of DC/DC modules to DC/DC or MPPT mode: `command` 0x0F, `sub_command` 0x1111.
@@ -1538,7 +1558,11 @@ impl Within<SetOperatingMode> {
 impl Layout for SetOperatingMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)
+    }
 }
 
 /// Enable or disable slow startup: `command` 0x13. Section 3.3.
@@ -1609,10 +1633,12 @@ impl Layout for SetWalkIn {
     const SIGNALS: AnySignals = &[&Self::WALK_IN, &Self::INTERVAL];
     const DECODE: Decode<Self> =
         |data| Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::WALK_IN.put(message.walk_in, payload)?;
-        Self::INTERVAL.encode(message.interval_s, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::WALK_IN.put(self.walk_in, payload)?;
+        Self::INTERVAL.encode(self.interval_s, payload)
+    }
 }
 
 /// What a reply of [`SetWalkIn`] carries.
@@ -1630,7 +1656,11 @@ impl SetWalkInReply {
 impl Layout for SetWalkInReply {
     const SIGNALS: AnySignals = &[&SetWalkIn::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| SetWalkIn::WALK_IN.put(message.walk_in, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        SetWalkIn::WALK_IN.put(self.walk_in, payload)
+    }
 }
 
 /// Make the green LED flash: `command` 0x14. Section 3.3.
@@ -1678,7 +1708,11 @@ impl SetLed {
 impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::LED.put(self.led, payload)
+    }
 }
 
 /// Switch operational readiness on or off: `command` 0x1A. Section 3.3.
@@ -1719,7 +1753,11 @@ impl SwitchModules {
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.put(self.power, payload)
+    }
 }
 
 /// Set voltage and total current of the system or of a group: `command` 0x1B. Section 3.3.
@@ -1765,10 +1803,12 @@ impl Layout for SetTotalOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Set voltage and current of every module addressed: `command` 0x1C. Section 3.3.
@@ -1813,10 +1853,12 @@ impl Layout for SetModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Every message that a frame can carry.

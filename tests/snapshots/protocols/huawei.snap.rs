@@ -1332,7 +1332,11 @@ impl OperatingHours {
 impl Layout for OperatingHours {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_h, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_h, payload)
+    }
 }
 
 /// Input power: `register` 0x170. Section 4.3.
@@ -1373,7 +1377,11 @@ impl InputPower {
 impl Layout for InputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_w, payload)
+    }
 }
 
 /// Input frequency: `register` 0x171. Section 4.3.
@@ -1411,7 +1419,11 @@ impl InputFrequency {
 impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_hz, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_hz, payload)
+    }
 }
 
 /// Input current: `register` 0x172. Section 4.3.
@@ -1449,7 +1461,11 @@ impl InputCurrent {
 impl Layout for InputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Output power: `register` 0x173. Section 4.3.
@@ -1487,7 +1503,11 @@ impl OutputPower {
 impl Layout for OutputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_w, payload)
+    }
 }
 
 /// Efficiency: `register` 0x174. Section 4.3.
@@ -1525,7 +1545,11 @@ impl Efficiency {
 impl Layout for Efficiency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value, payload)
+    }
 }
 
 /// Output voltage measured: `register` 0x175. Section 4.3.
@@ -1564,7 +1588,11 @@ impl OutputVoltage {
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Output current that the PSU can give now: `register` 0x176. Section 4.3, 10.3.
@@ -1639,7 +1667,11 @@ impl MaximumOutputCurrent {
 impl Layout for MaximumOutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_raw, payload)
+    }
 }
 
 /// Input voltage: `register` 0x178. Section 4.3.
@@ -1680,7 +1712,11 @@ impl InputVoltage {
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Temperature of the output stage: `register` 0x17F. Section 4.3.
@@ -1718,7 +1754,11 @@ impl OutputTemperature {
 impl Layout for OutputTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Temperature of the input stage: `register` 0x180. Section 4.3.
@@ -1761,7 +1801,11 @@ impl InputTemperature {
 impl Layout for InputTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Output current 1, fast and not filtered: `register` 0x181. Section 4.3.
@@ -1803,7 +1847,11 @@ impl OutputCurrent1 {
 impl Layout for OutputCurrent1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Output current 2, slow and filtered: `register` 0x182. Section 4.3.
@@ -1845,7 +1893,11 @@ impl OutputCurrent2 {
 impl Layout for OutputCurrent2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Alarms and states: `register` 0x183. Section 4.3.
@@ -1890,7 +1942,11 @@ impl Alarms {
 impl Layout for Alarms {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Duty cycles and speed of the fan: `register` 0x187. Section 8.3.
@@ -1938,11 +1994,13 @@ impl Layout for FanState {
         target_duty_percent: Self::TARGET_DUTY.decode(data),
         speed_rpm: Self::SPEED.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MINIMUM_DUTY.encode(message.minimum_duty_percent, payload)?;
-        Self::TARGET_DUTY.encode(message.target_duty_percent, payload)?;
-        Self::SPEED.put(message.speed_rpm, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MINIMUM_DUTY.encode(self.minimum_duty_percent, payload)?;
+        Self::TARGET_DUTY.encode(self.target_duty_percent, payload)?;
+        Self::SPEED.put(self.speed_rpm, payload)
+    }
 }
 
 /// Information on the PSU: `command` 0x50. Section 5.
@@ -2040,7 +2098,11 @@ impl CharacteristicData {
 impl Layout for CharacteristicData {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Serial number: `register` 0x002. Section 5.2.
@@ -2069,7 +2131,11 @@ impl SerialNumber {
 impl Layout for SerialNumber {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 1: `register` 0x003. Section 5.2.
@@ -2097,7 +2163,11 @@ impl Barcode1 {
 impl Layout for Barcode1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 2: `register` 0x004. Section 5.2.
@@ -2125,7 +2195,11 @@ impl Barcode2 {
 impl Layout for Barcode2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Versions of hardware and software: `register` 0x005. Section 5.2.
@@ -2163,11 +2237,13 @@ impl Layout for Versions {
     const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
     const DECODE: Decode<Self> =
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::HARDWARE.put(message.hardware, payload)?;
-        Self::DCDC.put(message.dcdc, payload)?;
-        Self::PFC.put(message.pfc, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::HARDWARE.put(self.hardware, payload)?;
+        Self::DCDC.put(self.dcdc, payload)?;
+        Self::PFC.put(self.pfc, payload)
+    }
 }
 
 /// Hardware address: `register` 0x006. Section 2.2, 5.2.
@@ -2198,7 +2274,11 @@ impl HardwareAddress {
 impl Layout for HardwareAddress {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// E-label. Section 6.
@@ -2265,10 +2345,12 @@ impl ELabelPart {
 impl Layout for ELabelPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PART.put(self.part, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 impl Parted for ELabel {
@@ -2347,7 +2429,11 @@ impl Within<OutputVoltageSetting> {
 impl Layout for OutputVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Output voltage off-line: `register` 0x101. Section 7.1, 11.
@@ -2411,7 +2497,11 @@ impl Within<DefaultOutputVoltage> {
 impl Layout for DefaultOutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Overvoltage protection: `register` 0x102. Section 7.1.
@@ -2473,7 +2563,11 @@ impl Within<OvervoltageProtection> {
 impl Layout for OvervoltageProtection {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Limit of the output current: `register` 0x103. Section 7.1, 10, 11.
@@ -2569,7 +2663,11 @@ impl Within<CurrentLimit> {
 impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_raw, payload)
+    }
 }
 
 /// Limit of the output current off-line: `register` 0x104. Section 7.1, 10, 11.
@@ -2666,7 +2764,11 @@ impl Within<DefaultCurrentLimit> {
 impl Layout for DefaultCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_raw, payload)
+    }
 }
 
 /// Limit of the input current: `register` 0x109. Section 7.1, 7.4, 11.3.
@@ -2709,10 +2811,12 @@ impl InputCurrentLimit {
 impl Layout for InputCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::STATE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { state: Self::STATE.get(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::STATE.put(message.state, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::STATE.put(self.state, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Duty cycle of the fan set: `register` 0x114. Section 7.1, 7.3, 7.4, 11.3.
@@ -2777,7 +2881,11 @@ impl Within<FanDuty> {
 impl Layout for FanDuty {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_percent, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_percent, payload)
+    }
 }
 
 /// Switch the output on or off: `register` 0x132. Section 7.1.
@@ -2809,7 +2917,11 @@ impl Standby {
 impl Layout for Standby {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// How the fan runs: `register` 0x134. Section 7.1, 7.4, 11.3.
@@ -2862,7 +2974,11 @@ impl FanMode {
 impl Layout for FanMode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Whether a PSU is ready, and its load: `register` 0x001. Section 9.1, 9.2.
@@ -2898,10 +3014,12 @@ impl Layout for ReadyState {
     const SIGNALS: AnySignals = &[&Self::READINESS, &Self::LOAD];
     const DECODE: Decode<Self> =
         |data| Self { readiness: Self::READINESS.get(data), load_percent: Self::LOAD.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::READINESS.put(message.readiness, payload)?;
-        Self::LOAD.encode(message.load_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::READINESS.put(self.readiness, payload)?;
+        Self::LOAD.encode(self.load_percent, payload)
+    }
 }
 
 /// Load that a PSU tells all PSUs: `register` 0x002. Section 9.1, 9.2.
@@ -2930,7 +3048,11 @@ impl CommonLoad {
 impl Layout for CommonLoad {
     const SIGNALS: AnySignals = &[&Self::LOAD];
     const DECODE: Decode<Self> = |data| Self { load_percent: Self::LOAD.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::LOAD.encode(message.load_percent, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::LOAD.encode(self.load_percent, payload)
+    }
 }
 
 /// Whether a PSU gives voltage, and its load: `register` 0x003. Section 9.1, 9.2.
@@ -2968,10 +3090,12 @@ impl Layout for ActiveState {
     const SIGNALS: AnySignals = &[&Self::ACTIVITY, &Self::LOAD];
     const DECODE: Decode<Self> =
         |data| Self { activity: Self::ACTIVITY.get(data), load_percent: Self::LOAD.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::ACTIVITY.put(message.activity, payload)?;
-        Self::LOAD.encode(message.load_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::ACTIVITY.put(self.activity, payload)?;
+        Self::LOAD.encode(self.load_percent, payload)
+    }
 }
 
 /// Unexplained frame at power-up, command 0x10: `command` 0x10. Section 9.3.
@@ -3011,10 +3135,12 @@ impl StartUp10 {
 impl Layout for StartUp10 {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::CONTENT];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), content: Self::CONTENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::NUMBER.put(message.number, payload)?;
-        Self::CONTENT.put(message.content, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::NUMBER.put(self.number, payload)?;
+        Self::CONTENT.put(self.content, payload)
+    }
 }
 
 /// Unexplained frame at power-up, command 0x81: `command` 0x81. Section 9.3.
@@ -3050,7 +3176,11 @@ impl StartUp81 {
 impl Layout for StartUp81 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -1168,10 +1168,12 @@ impl SystemOutput {
 impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.put(message.voltage_v, payload)?;
-        Self::CURRENT.put(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_v, payload)?;
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Number of modules in the system or in a group: `command` 0x02. Section 2.4.
@@ -1204,7 +1206,11 @@ impl ModuleCount {
 impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::COUNT.put(self.count, payload)
+    }
 }
 
 /// Output voltage and current of one module: `command` 0x03. Section 2.4.
@@ -1243,10 +1249,12 @@ impl ModuleOutput {
 impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.put(message.voltage_v, payload)?;
-        Self::CURRENT.put(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_v, payload)?;
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Group, temperature and status of one module: `command` 0x04. Section 2.4.
@@ -1306,13 +1314,15 @@ impl Layout for ModuleStatus {
         status_1: Self::STATUS_1.get(data),
         status_0: Self::STATUS_0.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::GROUP.put(message.group, payload)?;
-        Self::TEMPERATURE.put(message.temperature_c, payload)?;
-        Self::STATUS_2.put(message.status_2, payload)?;
-        Self::STATUS_1.put(message.status_1, payload)?;
-        Self::STATUS_0.put(message.status_0, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)?;
+        Self::TEMPERATURE.put(self.temperature_c, payload)?;
+        Self::STATUS_2.put(self.status_2, payload)?;
+        Self::STATUS_1.put(self.status_1, payload)?;
+        Self::STATUS_0.put(self.status_0, payload)
+    }
 }
 
 /// Line-to-line AC input voltages of one module: `command` 0x06. Section 2.4.
@@ -1356,11 +1366,13 @@ impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::AB.encode(message.ab_v, payload)?;
-        Self::BC.encode(message.bc_v, payload)?;
-        Self::CA.encode(message.ca_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::AB.encode(self.ab_v, payload)?;
+        Self::BC.encode(self.bc_v, payload)?;
+        Self::CA.encode(self.ca_v, payload)
+    }
 }
 
 /// Output voltage and total current of the system or of a group in fixed point: `command` 0x08. Section
@@ -1399,10 +1411,12 @@ impl Layout for SystemOutputFixed {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Output voltage and current of one module in fixed point: `command` 0x09. Section 2.4.
@@ -1442,10 +1456,12 @@ impl Layout for ModuleOutputFixed {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Limits of one module: `command` 0x0A. Section 2.4.
@@ -1500,12 +1516,14 @@ impl Layout for ModuleLimits {
         maximum_current_a: Self::MAXIMUM_CURRENT.decode(data),
         rated_power_w: Self::RATED_POWER.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MAXIMUM_VOLTAGE.put(message.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.put(message.minimum_voltage_v, payload)?;
-        Self::MAXIMUM_CURRENT.encode(message.maximum_current_a, payload)?;
-        Self::RATED_POWER.encode(message.rated_power_w, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MAXIMUM_VOLTAGE.put(self.maximum_voltage_v, payload)?;
+        Self::MINIMUM_VOLTAGE.put(self.minimum_voltage_v, payload)?;
+        Self::MAXIMUM_CURRENT.encode(self.maximum_current_a, payload)?;
+        Self::RATED_POWER.encode(self.rated_power_w, payload)
+    }
 }
 
 /// Barcode of one module: `command` 0x0B. Section 2.4.
@@ -1544,7 +1562,11 @@ impl Barcode {
 impl Layout for Barcode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// External voltage of one module and the current that the module can deliver: `command` 0x0C. Section
@@ -1596,10 +1618,12 @@ impl Layout for ExternalVoltage {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::ALLOWED_CURRENT.encode(message.allowed_current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
+    }
 }
 
 /// Enable or disable soft start: `command` 0x13. Section 2.4.
@@ -1635,7 +1659,11 @@ impl SetWalkIn {
 impl Layout for SetWalkIn {
     const SIGNALS: AnySignals = &[&Self::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::WALK_IN.put(message.walk_in, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::WALK_IN.put(self.walk_in, payload)
+    }
 }
 
 /// Make the green LED flash: `command` 0x14. Section 2.4.
@@ -1669,7 +1697,11 @@ impl SetLed {
 impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::LED.put(self.led, payload)
+    }
 }
 
 /// Put modules into a group: `command` 0x16. Section 2.4.
@@ -1710,7 +1742,11 @@ impl SetGroup {
 impl Layout for SetGroup {
     const SIGNALS: AnySignals = &[&Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Send modules to sleep: `command` 0x19. Section 2.4.
@@ -1746,7 +1782,11 @@ impl SetSleep {
 impl Layout for SetSleep {
     const SIGNALS: AnySignals = &[&Self::SLEEP];
     const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::SLEEP.put(message.sleep, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SLEEP.put(self.sleep, payload)
+    }
 }
 
 /// Switch modules on or off: `command` 0x1A. Section 2.4.
@@ -1791,7 +1831,11 @@ impl SwitchModules {
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.put(self.power, payload)
+    }
 }
 
 /// Set voltage and total current of the system or of a group: `command` 0x1B. Section 2.4.
@@ -1862,10 +1906,12 @@ impl Layout for SetTotalOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Set voltage and current of every module addressed: `command` 0x1C. Section 2.4.
@@ -1940,10 +1986,12 @@ impl Layout for SetModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Choose where modules get their address from: `command` 0x1F. Section 2.4.
@@ -1986,7 +2034,11 @@ impl SetAddressMode {
 impl Layout for SetAddressMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)
+    }
 }
 
 /// Every message that a frame can carry.

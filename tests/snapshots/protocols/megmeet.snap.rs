@@ -1901,16 +1901,18 @@ impl Layout for CharacteristicWord {
         minor_version: Self::MINOR_VERSION.get(data),
         generation: Self::GENERATION.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SUPPLY.put(message.supply, payload)?;
-        Self::PHASES.put(message.phases, payload)?;
-        Self::INPUT_TYPE.put(message.input_type, payload)?;
-        Self::RATED_CURRENT.encode(message.rated_current_a, payload)?;
-        Self::OUTPUT_TYPE.put(message.output_type, payload)?;
-        Self::EFFICIENCY.put(message.efficiency, payload)?;
-        Self::MINOR_VERSION.put(message.minor_version, payload)?;
-        Self::GENERATION.put(message.generation, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SUPPLY.put(self.supply, payload)?;
+        Self::PHASES.put(self.phases, payload)?;
+        Self::INPUT_TYPE.put(self.input_type, payload)?;
+        Self::RATED_CURRENT.encode(self.rated_current_a, payload)?;
+        Self::OUTPUT_TYPE.put(self.output_type, payload)?;
+        Self::EFFICIENCY.put(self.efficiency, payload)?;
+        Self::MINOR_VERSION.put(self.minor_version, payload)?;
+        Self::GENERATION.put(self.generation, payload)
+    }
 }
 
 /// Versions of hardware and software: `signal` 0x005. Section 2.2.2, 2.2.3.
@@ -1965,11 +1967,13 @@ impl Layout for Versions {
     const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
     const DECODE: Decode<Self> =
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::HARDWARE.put(message.hardware, payload)?;
-        Self::DCDC.put(message.dcdc, payload)?;
-        Self::PFC.put(message.pfc, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::HARDWARE.put(self.hardware, payload)?;
+        Self::DCDC.put(self.dcdc, payload)?;
+        Self::PFC.put(self.pfc, payload)
+    }
 }
 
 /// Place of the module in the system: `signal` 0x006. Section 2.2.2, 2.2.3, 4.
@@ -2031,10 +2035,12 @@ impl HardwareAddress {
 impl Layout for HardwareAddress {
     const SIGNALS: AnySignals = &[&Self::GROUP, &Self::SLAVE];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), slave: Self::SLAVE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::GROUP.put(message.group, payload)?;
-        Self::SLAVE.put(message.slave, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)?;
+        Self::SLAVE.put(self.slave, payload)
+    }
 }
 
 /// DC output voltage set: `signal` 0x100. Section 2.2.2, 4.
@@ -2103,7 +2109,11 @@ impl Within<OutputVoltageSetting> {
 impl Layout for OutputVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// DC output voltage by default: `signal` 0x101. Section 2.2.2, 4.
@@ -2196,7 +2206,11 @@ impl Within<DefaultOutputVoltage> {
 impl Layout for DefaultOutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// DC output overvoltage protection point: `signal` 0x102. Section 2.2.2.
@@ -2281,7 +2295,11 @@ impl Within<OvervoltageProtectionPoint> {
 impl Layout for OvervoltageProtectionPoint {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// DC output current limit set: `signal` 0x103. Section 2.2.2, 4.
@@ -2329,7 +2347,11 @@ impl CurrentLimitSetting {
 impl Layout for CurrentLimitSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value, payload)
+    }
 }
 
 /// Current limit by default: `signal` 0x104. Section 2.2.2, 4.
@@ -2388,7 +2410,11 @@ impl DefaultCurrentLimit {
 impl Layout for DefaultCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value, payload)
+    }
 }
 
 /// Walk-in time: `signal` 0x10C. Section 2.2.2.
@@ -2444,7 +2470,11 @@ impl WalkInTime {
 impl Layout for WalkInTime {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_s, payload)
+    }
 }
 
 /// Total running time: `signal` 0x10E. Section 2.2.2, 3.4.
@@ -2504,7 +2534,11 @@ impl TotalRunningTime {
 impl Layout for TotalRunningTime {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_h, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_h, payload)
+    }
 }
 
 /// Switch modules on or off: `signal` 0x132. Section 2.2.2.
@@ -2540,7 +2574,11 @@ impl SwitchModules {
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Reset the lockout after an overvoltage: `signal` 0x133. Section 2.2.2.
@@ -2571,7 +2609,11 @@ impl ResetOvervoltageLockout {
 impl Layout for ResetOvervoltageLockout {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Make the green light of a module flash: `signal` 0x135. Section 2.2.2, 4.
@@ -2604,7 +2646,11 @@ impl FlashGreenLight {
 impl Layout for FlashGreenLight {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Make modules assign their addresses anew: `signal` 0x13A. Section 2.2.2, 4.
@@ -2640,7 +2686,11 @@ impl AssignAddresses {
 impl Layout for AssignAddresses {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Control the lights of modules: `signal` 0x140. Section 2.2.2, 2.2.3.
@@ -2680,11 +2730,13 @@ impl Layout for ControlLights {
     const SIGNALS: AnySignals = &[&Self::RED, &Self::YELLOW, &Self::GREEN];
     const DECODE: Decode<Self> =
         |data| Self { red: Self::RED.get(data), yellow: Self::YELLOW.get(data), green: Self::GREEN.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::RED.put(message.red, payload)?;
-        Self::YELLOW.put(message.yellow, payload)?;
-        Self::GREEN.put(message.green, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::RED.put(self.red, payload)?;
+        Self::YELLOW.put(self.yellow, payload)?;
+        Self::GREEN.put(self.green, payload)
+    }
 }
 
 /// Choose the alarms that are shielded: `signal` 0x142. Section 2.2.2, 2.2.3.
@@ -2724,10 +2776,12 @@ impl ShieldAlarms {
 impl Layout for ShieldAlarms {
     const SIGNALS: AnySignals = &[&Self::EXTENDED, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::EXTENDED.put(message.extended, payload)?;
-        Self::ALARMS.put(message.alarms, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::EXTENDED.put(self.extended, payload)?;
+        Self::ALARMS.put(self.alarms, payload)
+    }
 }
 
 /// Shield the yellow light while the controller is not heard: `signal` 0x143. Section 2.2.2.
@@ -2769,7 +2823,11 @@ impl ShieldCommunicationAlarm {
 impl Layout for ShieldCommunicationAlarm {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Input power: `signal` 0x170. Section 2.2.2, 3.4.
@@ -2805,7 +2863,11 @@ impl InputPower {
 impl Layout for InputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_w, payload)
+    }
 }
 
 /// Input frequency: `signal` 0x171. Section 2.2.2, 3.4.
@@ -2841,7 +2903,11 @@ impl InputFrequency {
 impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_hz, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_hz, payload)
+    }
 }
 
 /// Input current: `signal` 0x172. Section 2.2.2, 3.4.
@@ -2877,7 +2943,11 @@ impl InputCurrent {
 impl Layout for InputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// DC output power: `signal` 0x173. Section 2.2.2, 3.4.
@@ -2913,7 +2983,11 @@ impl OutputPower {
 impl Layout for OutputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_w, payload)
+    }
 }
 
 /// DC output voltage measured: `signal` 0x175. Section 2.2.2, 3.4.
@@ -2949,7 +3023,11 @@ impl OutputVoltage {
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Output current limit in effect: `signal` 0x176. Section 2.2.2, 3.4.
@@ -2985,7 +3063,11 @@ impl ActualCurrentLimit {
 impl Layout for ActualCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Output power limit in effect: `signal` 0x177. Section 2.2.2.
@@ -3020,7 +3102,11 @@ impl ActualPowerLimit {
 impl Layout for ActualPowerLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_w, payload)
+    }
 }
 
 /// Input voltage of a single-phase module: `signal` 0x178. Section 2.2.2, 3.4.
@@ -3060,7 +3146,11 @@ impl InputVoltage {
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Ambient temperature at the air inlet: `signal` 0x180. Section 2.2.2, 3.4.
@@ -3100,7 +3190,11 @@ impl AmbientTemperature {
 impl Layout for AmbientTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Output current shown: `signal` 0x182. Section 2.2.2, 3.4.
@@ -3136,7 +3230,11 @@ impl OutputCurrent {
 impl Layout for OutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Alarms and states: `signal` 0x183. Section 2.2.2, 2.2.3, 3.4, 4.
@@ -3178,10 +3276,12 @@ impl ModuleStatus {
 impl Layout for ModuleStatus {
     const SIGNALS: AnySignals = &[&Self::EXTENDED, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::EXTENDED.put(message.extended, payload)?;
-        Self::ALARMS.put(message.alarms, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::EXTENDED.put(self.extended, payload)?;
+        Self::ALARMS.put(self.alarms, payload)
+    }
 }
 
 /// Output external voltage: `signal` 0x184. Section 2.2.2.
@@ -3216,7 +3316,11 @@ impl ExternalVoltage {
 impl Layout for ExternalVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Rated current: `signal` 0x188. Section 2.2.2.
@@ -3247,7 +3351,11 @@ impl RatedCurrent {
 impl Layout for RatedCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Which addresses modules use: `signal` 0x21D. Section 2.2.2, 4.
@@ -3331,7 +3439,11 @@ impl Within<AddressModeSwitch> {
 impl Layout for AddressModeSwitch {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Version of the barcode: `signal` 0x222. Section 2.2.2.
@@ -3386,7 +3498,11 @@ impl BarcodeVersion {
 impl Layout for BarcodeVersion {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 1: `signal` 0x223. Section 2.2.2.
@@ -3441,7 +3557,11 @@ impl Barcode1 {
 impl Layout for Barcode1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 2: `signal` 0x224. Section 2.2.2.
@@ -3496,7 +3616,11 @@ impl Barcode2 {
 impl Layout for Barcode2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 3: `signal` 0x225. Section 2.2.2.
@@ -3551,7 +3675,11 @@ impl Barcode3 {
 impl Layout for Barcode3 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Barcode part 4: `signal` 0x226. Section 2.2.2.
@@ -3606,7 +3734,11 @@ impl Barcode4 {
 impl Layout for Barcode4 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Duty cycle of the fan: `signal` 0x22B. Section 2.2.2.
@@ -3637,7 +3769,11 @@ impl FanDutyCycle {
 impl Layout for FanDutyCycle {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_percent, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_percent, payload)
+    }
 }
 
 /// Output current limit set in rectifier modules: `signal` 0x22D. Section 2.2.2.
@@ -3683,7 +3819,11 @@ impl RectifierCurrentLimitSetting {
 impl Layout for RectifierCurrentLimitSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value, payload)
+    }
 }
 
 /// Output current limit set in PV modules: `signal` 0x22E. Section 2.2.2.
@@ -3727,7 +3867,11 @@ impl PvCurrentLimitSetting {
 impl Layout for PvCurrentLimitSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value, payload)
+    }
 }
 
 /// Output voltage set in rectifier modules: `signal` 0x22F. Section 2.2.2.
@@ -3800,7 +3944,11 @@ impl Within<RectifierOutputVoltageSetting> {
 impl Layout for RectifierOutputVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Output voltage set in PV modules: `signal` 0x230. Section 2.2.2.
@@ -3867,7 +4015,11 @@ impl Within<PvOutputVoltageSetting> {
 impl Layout for PvOutputVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Alarm word of the PFC side: `signal` 0x236. Section 2.2.2.
@@ -3902,7 +4054,11 @@ impl PfcAlarmWord {
 impl Layout for PfcAlarmWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Fault word of the PFC side: `signal` 0x237. Section 2.2.2.
@@ -3933,7 +4089,11 @@ impl PfcFaultWord {
 impl Layout for PfcFaultWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Status word of the PFC side: `signal` 0x238. Section 2.2.2.
@@ -3964,7 +4124,11 @@ impl PfcStatusWord {
 impl Layout for PfcStatusWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Alarm word of the DC/DC side: `signal` 0x239. Section 2.2.2.
@@ -3995,7 +4159,11 @@ impl DcdcAlarmWord {
 impl Layout for DcdcAlarmWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Fault word of the DC/DC side: `signal` 0x23A. Section 2.2.2.
@@ -4026,7 +4194,11 @@ impl DcdcFaultWord {
 impl Layout for DcdcFaultWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Status word of the DC/DC side: `signal` 0x23B. Section 2.2.2.
@@ -4057,7 +4229,11 @@ impl DcdcStatusWord {
 impl Layout for DcdcStatusWord {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Whether modules start by themselves, by default: `signal` 0x24E. Section 2.2.2.
@@ -4105,7 +4281,11 @@ impl AutoBootSetting {
 impl Layout for AutoBootSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// PV voltage set: `signal` 0x270. Section 2.2.2.
@@ -4150,7 +4330,11 @@ impl PvVoltageSetting {
 impl Layout for PvVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Reserved: `signal` 0x271. Section 2.2.2.
@@ -4236,7 +4420,11 @@ impl MpptSingleScan {
 impl Layout for MpptSingleScan {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Cycle of scans for the maximum power point: `signal` 0x274. Section 2.2.2.
@@ -4292,7 +4480,11 @@ impl MpptScanCycle {
 impl Layout for MpptScanCycle {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_s, payload)
+    }
 }
 
 /// Wind energy voltage set: `signal` 0x275. Section 2.2.2.
@@ -4337,7 +4529,11 @@ impl WindVoltageSetting {
 impl Layout for WindVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Upper limit of the voltage range for wind energy: `signal` 0x276. Section 2.2.2.
@@ -4382,7 +4578,11 @@ impl WindVoltageUpperLimit {
 impl Layout for WindVoltageUpperLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Lower limit of the voltage range for wind energy: `signal` 0x277. Section 2.2.2.
@@ -4427,7 +4627,11 @@ impl WindVoltageLowerLimit {
 impl Layout for WindVoltageLowerLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Customer information part 1: `signal` 0x301. Section 2.2.2.
@@ -4482,7 +4686,11 @@ impl CustomerInformation1 {
 impl Layout for CustomerInformation1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 2: `signal` 0x302. Section 2.2.2.
@@ -4537,7 +4745,11 @@ impl CustomerInformation2 {
 impl Layout for CustomerInformation2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 3: `signal` 0x303. Section 2.2.2.
@@ -4592,7 +4804,11 @@ impl CustomerInformation3 {
 impl Layout for CustomerInformation3 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 4: `signal` 0x304. Section 2.2.2.
@@ -4647,7 +4863,11 @@ impl CustomerInformation4 {
 impl Layout for CustomerInformation4 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 5: `signal` 0x305. Section 2.2.2.
@@ -4702,7 +4922,11 @@ impl CustomerInformation5 {
 impl Layout for CustomerInformation5 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 6: `signal` 0x306. Section 2.2.2.
@@ -4757,7 +4981,11 @@ impl CustomerInformation6 {
 impl Layout for CustomerInformation6 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 7: `signal` 0x307. Section 2.2.2.
@@ -4812,7 +5040,11 @@ impl CustomerInformation7 {
 impl Layout for CustomerInformation7 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Customer information part 8: `signal` 0x308. Section 2.2.2.
@@ -4867,7 +5099,11 @@ impl CustomerInformation8 {
 impl Layout for CustomerInformation8 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Inherent information: `command` 0x50. Section 3.3, 4.

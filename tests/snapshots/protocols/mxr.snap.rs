@@ -1065,7 +1065,11 @@ impl OutputVoltage {
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Output current: `register` 0x0002. Section 3.1.
@@ -1096,7 +1100,11 @@ impl OutputCurrent {
 impl Layout for OutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_a, payload)
+    }
 }
 
 /// Current limit (1 is the rated current): `register` 0x0003. Section 3.1.
@@ -1132,7 +1140,11 @@ impl CurrentLimit {
 impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Temperature of the DC board: `register` 0x0004. Section 3.1.
@@ -1167,7 +1179,11 @@ impl DcBoardTemperature {
 impl Layout for DcBoardTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_c, payload)
+    }
 }
 
 /// Input voltage (phase or DC): `register` 0x0005. Section 3.1.
@@ -1201,7 +1217,11 @@ impl InputVoltage {
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// PFC 0 voltage (positive half bus): `register` 0x0008. Section 3.1.
@@ -1232,7 +1252,11 @@ impl Pfc0Voltage {
 impl Layout for Pfc0Voltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// PFC 1 voltage (negative half bus): `register` 0x000A. Section 3.1.
@@ -1263,7 +1287,11 @@ impl Pfc1Voltage {
 impl Layout for Pfc1Voltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Ambient temperature at the panel: `register` 0x000B. Section 3.1.
@@ -1298,7 +1326,11 @@ impl AmbientTemperature {
 impl Layout for AmbientTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_c, payload)
+    }
 }
 
 /// Voltage of AC phase A: `register` 0x000C. Section 3.1.
@@ -1329,7 +1361,11 @@ impl PhaseAVoltage {
 impl Layout for PhaseAVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Voltage of AC phase B: `register` 0x000D. Section 3.1.
@@ -1360,7 +1396,11 @@ impl PhaseBVoltage {
 impl Layout for PhaseBVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Voltage of AC phase C: `register` 0x000E. Section 3.1.
@@ -1391,7 +1431,11 @@ impl PhaseCVoltage {
 impl Layout for PhaseCVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Temperature of the PFC board: `register` 0x0010. Section 3.1.
@@ -1426,7 +1470,11 @@ impl PfcBoardTemperature {
 impl Layout for PfcBoardTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_c, payload)
+    }
 }
 
 /// Rated output power: `register` 0x0011. Section 3.1.
@@ -1457,7 +1505,11 @@ impl RatedPower {
 impl Layout for RatedPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_w, payload)
+    }
 }
 
 /// Rated output current: `register` 0x0012. Section 3.1.
@@ -1488,7 +1540,11 @@ impl RatedCurrent {
 impl Layout for RatedCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_a, payload)
+    }
 }
 
 /// Operating altitude, by which the module derates: `register` 0x0017. Section 3.1, 6.
@@ -1532,7 +1588,11 @@ impl SetAltitude {
 impl Layout for SetAltitude {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_m, payload)
+    }
 }
 
 /// Output current: `register` 0x001B. Section 3.1.
@@ -1568,7 +1628,11 @@ impl SetOutputCurrent {
 impl Layout for SetOutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Put a module into a group: `register` 0x001E. Section 3.1, 4.
@@ -1617,7 +1681,11 @@ impl SetGroup {
 impl Layout for SetGroup {
     const SIGNALS: AnySignals = &[&Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Choose where modules get their address from: `register` 0x001F. Section 3.1, 4.
@@ -1657,7 +1725,11 @@ impl SetAddressMode {
 impl Layout for SetAddressMode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Output power (1 is the rated power): `register` 0x0020. Section 3.1.
@@ -1689,7 +1761,11 @@ impl SetOutputPower {
 impl Layout for SetOutputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Output voltage: `register` 0x0021. Section 2.3.1, 3.1.
@@ -1726,7 +1802,11 @@ impl SetOutputVoltage {
 impl Layout for SetOutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Current limit (1 is the rated current): `register` 0x0022. Section 2.3.1, 3.1.
@@ -1772,7 +1852,11 @@ impl SetCurrentLimit {
 impl Layout for SetCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Upper limit of the output voltage, at which the overvoltage protection acts: `register` 0x0023.
@@ -1807,7 +1891,11 @@ impl SetOvervoltagePoint {
 impl Layout for SetOvervoltagePoint {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Start up or shut down: `register` 0x0030. Section 2.3.1, 3.1.
@@ -1844,7 +1932,11 @@ impl SwitchModules {
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Reset after overvoltage: `register` 0x0031. Section 3.1.
@@ -1876,7 +1968,11 @@ impl ResetOvervoltage {
 impl Layout for ResetOvervoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Relevance permission of the output overvoltage protection: `register` 0x003E. Section 3.1.
@@ -1908,7 +2004,11 @@ impl SetOvervoltageRelevance {
 impl Layout for SetOvervoltageRelevance {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Alarms and states: `register` 0x0040. Section 2.3.2, 3.1, 3.2.
@@ -1945,7 +2045,11 @@ impl ModuleStatus {
 impl Layout for ModuleStatus {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Group of the module and address on its DIP switch: `register` 0x0043. Section 3.1.
@@ -1983,10 +2087,12 @@ impl GroupAndAddress {
 impl Layout for GroupAndAddress {
     const SIGNALS: AnySignals = &[&Self::GROUP, &Self::ADDRESS];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), address: Self::ADDRESS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::GROUP.put(message.group, payload)?;
-        Self::ADDRESS.put(message.address, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::GROUP.put(self.group, payload)?;
+        Self::ADDRESS.put(self.address, payload)
+    }
 }
 
 /// Reset after a short circuit: `register` 0x0044. Section 3.1.
@@ -2018,7 +2124,11 @@ impl ResetShortCircuit {
 impl Layout for ResetShortCircuit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Input mode: `register` 0x0046. Section 3.1.
@@ -2050,7 +2160,11 @@ impl SetInputMode {
 impl Layout for SetInputMode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Input power: `register` 0x0048. Section 3.1.
@@ -2081,7 +2195,11 @@ impl InputPower {
 impl Layout for InputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_w, payload)
+    }
 }
 
 /// Altitude that is set: `register` 0x004A. Section 3.1.
@@ -2114,7 +2232,11 @@ impl Altitude {
 impl Layout for Altitude {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_m, payload)
+    }
 }
 
 /// Active input mode: `register` 0x004B. Section 3.1.
@@ -2145,7 +2267,11 @@ impl ActiveInputMode {
 impl Layout for ActiveInputMode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Low bits of the serial number: `register` 0x0054. Section 3.1.
@@ -2180,7 +2306,11 @@ impl SerialNumberLow {
 impl Layout for SerialNumberLow {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// High bits of the serial number: `register` 0x0055. Section 3.1.
@@ -2215,7 +2345,11 @@ impl SerialNumberHigh {
 impl Layout for SerialNumberHigh {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Version of the DC/DC side: `register` 0x0056. Section 3.1.
@@ -2250,7 +2384,11 @@ impl DcdcVersion {
 impl Layout for DcdcVersion {
     const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VERSION.put(self.version, payload)
+    }
 }
 
 /// Version of the PFC side: `register` 0x0057. Section 3.1.
@@ -2285,7 +2423,11 @@ impl PfcVersion {
 impl Layout for PfcVersion {
     const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VERSION.put(self.version, payload)
+    }
 }
 
 /// Every message that a frame can carry.

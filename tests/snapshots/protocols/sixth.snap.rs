@@ -894,15 +894,17 @@ impl Layout for MeasurementA {
         mode: Self::MODE.get(data),
         counter: Self::COUNTER.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)?;
-        Self::TEMPERATURE.encode(message.temperature_c, payload)?;
-        Self::POWER.encode(message.power_w, payload)?;
-        Self::OUTPUT.put(message.output, payload)?;
-        Self::MODE.put(message.mode, payload)?;
-        Self::COUNTER.put(message.counter, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)?;
+        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
+        Self::POWER.encode(self.power_w, payload)?;
+        Self::OUTPUT.put(self.output, payload)?;
+        Self::MODE.put(self.mode, payload)?;
+        Self::COUNTER.put(self.counter, payload)
+    }
 }
 
 /// What a rectifier works with. Section 4.
@@ -944,12 +946,14 @@ impl Layout for MeasurementB {
         fan_speed_rpm: Self::FAN_SPEED.get(data),
         load_percent: Self::LOAD.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::INPUT.put(message.input, payload)?;
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::FAN_SPEED.put(message.fan_speed_rpm, payload)?;
-        Self::LOAD.encode(message.load_percent, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::INPUT.put(self.input, payload)?;
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::FAN_SPEED.put(self.fan_speed_rpm, payload)?;
+        Self::LOAD.encode(self.load_percent, payload)
+    }
 }
 
 /// Output voltage that is wanted: `index` 0x2100. Section 5.
@@ -1006,7 +1010,11 @@ impl VoltageSetPoint {
 impl Layout for VoltageSetPoint {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Limit of the output current: `index` 0x2101. Section 5.
@@ -1061,7 +1069,11 @@ impl CurrentLimit {
 impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Switch the output: `index` 0x2102. Section 5.
@@ -1115,7 +1127,11 @@ impl OutputSwitch {
 impl Layout for OutputSwitch {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Least speed of the fan: `index` 0x2103. Section 5.
@@ -1172,7 +1188,11 @@ impl MinimumFanSpeed {
 impl Layout for MinimumFanSpeed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_percent, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_percent, payload)
+    }
 }
 
 /// Output voltage: `index` 0x2200. Section 5.
@@ -1209,7 +1229,11 @@ impl OutputVoltage {
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_v, payload)
+    }
 }
 
 /// Output current: `index` 0x2201. Section 5.
@@ -1246,7 +1270,11 @@ impl OutputCurrent {
 impl Layout for OutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_a, payload)
+    }
 }
 
 /// Temperature of the heat sink: `index` 0x2202. Section 5.
@@ -1292,7 +1320,11 @@ impl HeatSinkTemperature {
 impl Layout for HeatSinkTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Frequency of the input: `index` 0x2203. Section 5.
@@ -1329,7 +1361,11 @@ impl InputFrequency {
 impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_hz, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_hz, payload)
+    }
 }
 
 /// Time in operation: `index` 0x2204. Section 5.
@@ -1366,7 +1402,11 @@ impl OperatingTime {
 impl Layout for OperatingTime {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_h, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_h, payload)
+    }
 }
 
 /// First four characters of the serial number: `index` 0x2300. Section 5.
@@ -1403,7 +1443,11 @@ impl SerialNumber {
 impl Layout for SerialNumber {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Version of the firmware: `index` 0x2301. Section 5.
@@ -1440,7 +1484,11 @@ impl Firmware {
 impl Layout for Firmware {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Conditions of a rectifier: `index` 0x2400. Section 5.
@@ -1477,7 +1525,11 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Why a request is refused. Section 5.
@@ -1500,7 +1552,11 @@ impl Refusal {
 impl Layout for Refusal {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Sign of life of the controller: `sign` 0x55. Section 6.
@@ -1533,7 +1589,11 @@ impl KeepAlive {
 impl Layout for KeepAlive {
     const SIGNALS: AnySignals = &[&Self::OUTPUTS];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::OUTPUTS.put(self.outputs, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -629,13 +629,15 @@ impl Layout for ReferenceValues {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode(data),
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MODE.put(message.mode, payload)?;
-        Self::OPERATION.put(message.operation, payload)?;
-        Self::NOMINAL_VOLTAGE.encode(message.nominal_voltage_v, payload)?;
-        Self::MAXIMUM_VOLTAGE.encode(message.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.encode(message.minimum_voltage_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)?;
+        Self::OPERATION.put(self.operation, payload)?;
+        Self::NOMINAL_VOLTAGE.encode(self.nominal_voltage_v, payload)?;
+        Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
+        Self::MINIMUM_VOLTAGE.encode(self.minimum_voltage_v, payload)
+    }
 }
 
 /// Output voltage, current, power and faults of one module: `command` 0x21. Section 3.3.
@@ -681,12 +683,14 @@ impl Layout for OutputValues {
         power_w: Self::POWER.decode(data),
         status: Self::STATUS.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::CURRENT.encode(message.current_a, payload)?;
-        Self::POWER.encode(message.power_w, payload)?;
-        Self::STATUS.put(message.status, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::CURRENT.encode(self.current_a, payload)?;
+        Self::POWER.encode(self.power_w, payload)?;
+        Self::STATUS.put(self.status, payload)
+    }
 }
 
 /// Temperature and fan speeds of one module: `command` 0x22. Section 3.3.
@@ -730,11 +734,13 @@ impl Layout for TemperatureValues {
         fan_1_rpm: Self::FAN_1.get(data),
         fan_2_rpm: Self::FAN_2.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::TEMPERATURE.put(message.temperature_c, payload)?;
-        Self::FAN_1.put(message.fan_1_rpm, payload)?;
-        Self::FAN_2.put(message.fan_2_rpm, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::TEMPERATURE.put(self.temperature_c, payload)?;
+        Self::FAN_1.put(self.fan_1_rpm, payload)?;
+        Self::FAN_2.put(self.fan_2_rpm, payload)
+    }
 }
 
 /// Firmware version of one module: `command` 0x23. Section 3.3.
@@ -762,7 +768,11 @@ impl FirmwareVersion {
 impl Layout for FirmwareVersion {
     const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VERSION.put(self.version, payload)
+    }
 }
 
 /// Running times of one module: `command` 0x25. Section 3.3.
@@ -793,10 +803,12 @@ impl RunningTime {
 impl Layout for RunningTime {
     const SIGNALS: AnySignals = &[&Self::RUNNING, &Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::RUNNING.put(message.running_min, payload)?;
-        Self::TOTAL.put(message.total_min, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::RUNNING.put(self.running_min, payload)?;
+        Self::TOTAL.put(self.total_min, payload)
+    }
 }
 
 /// Whether one module should be replaced: `command` 0x27. Section 3.3.
@@ -826,7 +838,11 @@ impl ReplacementAdvice {
 impl Layout for ReplacementAdvice {
     const SIGNALS: AnySignals = &[&Self::ADVICE];
     const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::ADVICE.put(message.advice, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::ADVICE.put(self.advice, payload)
+    }
 }
 
 /// Set control mode, operation and output voltage of one module: `command` 0x10. Section 3.3.
@@ -914,11 +930,13 @@ impl Layout for Control {
         operation: Self::OPERATION.get(data),
         voltage_v: Self::VOLTAGE.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MODE.put(message.mode, payload)?;
-        Self::OPERATION.put(message.operation, payload)?;
-        Self::VOLTAGE.encode(message.voltage_v, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)?;
+        Self::OPERATION.put(self.operation, payload)?;
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Give one module another address: `command` 0x11. Section 3.3.
@@ -958,7 +976,11 @@ impl SetAddress {
 impl Layout for SetAddress {
     const SIGNALS: AnySignals = &[&Self::ADDRESS];
     const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::ADDRESS.put(message.address, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::ADDRESS.put(self.address, payload)
+    }
 }
 
 /// Every message that a frame can carry.

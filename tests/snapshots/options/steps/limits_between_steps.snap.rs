@@ -172,12 +172,14 @@ impl Layout for SetLimit {
         slope: Self::SLOPE.get(data),
         cold_raw: Self::COLD.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CURRENT.put(message.current_raw, payload)?;
-        Self::INTERVAL.put(message.interval_s, payload)?;
-        Self::SLOPE.put(message.slope, payload)?;
-        Self::COLD.put(message.cold_raw, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.put(self.current_raw, payload)?;
+        Self::INTERVAL.put(self.interval_s, payload)?;
+        Self::SLOPE.put(self.slope, payload)?;
+        Self::COLD.put(self.cold_raw, payload)
+    }
 }
 
 /// Set total: `command` 0x004. Section 2.
@@ -209,7 +211,11 @@ impl SetTotal {
 impl Layout for SetTotal {
     const SIGNALS: AnySignals = &[&Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { total: Self::TOTAL.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::TOTAL.put(message.total, payload);
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::TOTAL.put(self.total, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -221,12 +221,14 @@ impl Layout for SetOutput {
         delay_s: Self::DELAY.get(data),
         power_raw: Self::POWER.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.put(message.voltage_raw, payload)?;
-        Self::TEMPERATURE.put(message.temperature_raw, payload)?;
-        Self::DELAY.put(message.delay_s, payload)?;
-        Self::POWER.put(message.power_raw, payload)
-    };
+
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_raw, payload)?;
+        Self::TEMPERATURE.put(self.temperature_raw, payload)?;
+        Self::DELAY.put(self.delay_s, payload)?;
+        Self::POWER.put(self.power_raw, payload)
+    }
 }
 
 /// Every message that a frame can carry.
