@@ -2,8 +2,9 @@
 
 use canspec_codegen::interpret::{Decoded, Frame, decode};
 use canspec_codegen::model::{AddressTypeId, ModeId, Protocol, Travel};
-use canspec_protocols::{gcp, infy};
-use canspec_runtime::{Addressed, Destination};
+use canspec_protocols::{gbt27930, gcp, infy};
+use canspec_runtime::{Addressed, Destination, Error, Route};
+use canspec_tests::features_peers::{self as peers, Limits, Target};
 use canspec_tests::{AddressedVisitor, Frames, protocol, received, visit_addressed};
 
 /// How many random frames each protocol sees.
@@ -98,4 +99,27 @@ fn a_reply_shows_whom_its_request_addressed() {
 fn addresses_are_those_that_the_document_counts() {
     assert_eq!(shown!(gcp, 0x0283_85F0), (Some(gcp::Target::MpptModule(5)), Some(0xF0), Some(5)));
     assert_eq!(shown!(gcp, 0x0283_F005), (Some(gcp::Target::Module(5)), Some(0xF0), Some(5)));
+}
+
+#[test]
+fn of_two_peers_the_controller_is_the_one_that_requests_come_from() {
+    use gbt27930::Target;
+    assert_eq!(shown!(gbt27930, 0x1CEB_F456), (Some(Target::Peer), Some(0x56), None));
+    assert_eq!(shown!(gbt27930, 0x1CEB_56F4), (Some(Target::Peer), Some(0x56), None));
+    assert_eq!(shown!(gbt27930, 0x1CEB_FF56), (Some(Target::Everybody), Some(0x56), None));
+    assert_eq!(shown!(gbt27930, 0x1CEB_FFF4), (Some(Target::Everybody), None, None), "the BMS tells all");
+}
+
+#[test]
+fn another_sender_changes_its_own_address_and_not_that_of_its_peer() {
+    let sent = |route: Route<Target>| Limits { current_a: 125.0 }.offer(route).map(|sent| sent.frame().raw_id());
+    assert_eq!(sent(Target::Peer.sent_by(0x57)), Ok(0x0001_F457));
+    assert_eq!(sent(Target::Everybody.sent_by(0x57)), Ok(0x0001_FF57));
+    assert_eq!(sent(Target::Service.sent_by(0x22)), Ok(0x0001_FE22));
+    for stranger in [Target::Peer.sent_by(0xF5), Target::Service.sent_by(0x57)] {
+        assert!(matches!(sent(stranger), Err(Error::Address { .. })));
+    }
+    let request = Limits { current_a: 125.0 }.offer(Target::Peer.sent_by(0x57)).expect("a charger");
+    let reply = |id| request.is_reply(&peers::Frame::new_raw(id, true, [0; 8], 2));
+    assert_eq!([0x0001_57F4, 0x0001_56F4, 0x0001_57F5].map(reply), [true, false, false]);
 }

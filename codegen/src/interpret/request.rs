@@ -6,7 +6,7 @@ use super::encode::{confirm, continue_all_but_last, find_message, frame, length_
 use super::transfer::frames;
 use super::value::{Limits, raw_of, typed};
 use super::{Frame, Input, Refusal, decode};
-use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set};
+use crate::model::{AddressPattern, AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set};
 use crate::number::Rational;
 
 /// Where a request goes.
@@ -47,12 +47,8 @@ pub fn written_address(known: &AddressType) -> String {
 ///
 /// Says that the text is neither.
 pub fn source(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
-    let requests = protocol.modes.iter().filter_map(|mode| Some((mode, mode.request.as_ref()?)));
-    let senders = requests.flat_map(|(mode, request)| {
-        let others = request.addresses.iter().filter(|address| Some(address.address_type) != mode.target);
-        others.map(|address| &protocol[address.address_type])
-    });
-    address(senders, text, "240` or `0xF0")
+    let senders = protocol.modes.iter().filter_map(|mode| protocol.controller(mode));
+    address(senders.map(|kind| &protocol[kind]), text, "240` or `0xF0")
 }
 
 /// Reads an address: a number, or a name of one of the types.
@@ -328,17 +324,24 @@ fn identifier(
     if mode.target.is_some() != target.number.is_some() {
         return Err(refuse(message, &format!("write the target as `{}`", written(protocol, mode))));
     }
-    if source.is_some() && pattern.addresses.iter().all(|address| Some(address.address_type) == mode.target) {
-        return Err(refuse(message, &format!("the mode `{}` has no address for a source", mode.name)));
+    let controller = protocol.controller(mode);
+    if source.is_some() && controller.is_none() {
+        return Err(refuse(message, &no_source(mode, pattern)));
     }
     for address in &pattern.addresses {
-        let address_type = &protocol[address.address_type];
-        let number =
-            if Some(address.address_type) == mode.target { target.number } else { source.or(address_type.send) };
-        let raw = raw_address(message, address_type, number)?;
+        let (kind, address_type) = (Some(address.address_type), &protocol[address.address_type]);
+        let chosen = if kind == mode.target { target.number } else { source.filter(|_| kind == controller) };
+        let raw = raw_address(message, address_type, chosen.or(address_type.send))?;
         id = protocol[address.field].put(id, raw);
     }
     Ok(id)
+}
+
+/// Says why a request has no address for a source.
+fn no_source(mode: &Mode, pattern: &AddressPattern) -> String {
+    let others = pattern.addresses.iter().filter(|address| Some(address.address_type) != mode.target).count();
+    let why = if others == 0 { "has no address for a source" } else { "does not show which address is the source" };
+    format!("the mode `{}` {why}", mode.name)
 }
 
 pub fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64>) -> Result<u32, Refusal> {

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{AddressTypeId, Constant, Exchange, Kind, MessageId, Mode, Protocol, SelectorPlace, Who};
+use crate::model::{
+    Address, AddressTypeId, Constant, Exchange, Kind, MessageId, Mode, Protocol, SelectorPlace, Standard, Who,
+};
 
 /// What a message that travels as several frames consists of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -69,4 +71,33 @@ impl Protocol {
         let single = |mode| [Who::One, Who::Each].map(|who| self.sender(mode, who));
         self.modes.iter().flat_map(single).any(|known| known == Some(kind)).then_some(kind)
     }
+    /// Returns the kind of address of the controller that sends the requests of a mode.
+    ///
+    /// Two peers can both have a usual address. Then the controller's is that which a J1939 transport calls the
+    /// sender's, or which stands without the other in the requests of another mode.
+    pub(crate) fn controller(&self, mode: &Mode) -> Option<AddressTypeId> {
+        let own = usual(mode);
+        let is_known = |address: &&&Address| self.is_source(address) || self.is_alone(address);
+        let known: Vec<_> = own.iter().filter(|known| own.len() == 1 || is_known(known)).collect();
+        <[_; 1]>::try_from(known).ok().map(|[address]| address.address_type)
+    }
+
+    /// Tests whether a J1939 transport calls the field that of the sender.
+    fn is_source(&self, address: &Address) -> bool {
+        let is_source =
+            |standard: &Standard| matches!(standard, Standard::J1939(known) if known.source == address.field);
+        self.transports.iter().any(|transport| is_source(&transport.standard))
+    }
+
+    /// Tests whether the requests of some mode show no other usual address.
+    fn is_alone(&self, address: &Address) -> bool {
+        let is_only = |own: &[&Address]| matches!(own, [only] if only.address_type == address.address_type);
+        self.modes.iter().any(|mode| is_only(&usual(mode)))
+    }
+}
+
+/// Returns the addresses in a request that the caller need not choose.
+fn usual(mode: &Mode) -> Vec<&Address> {
+    let addresses = mode.request.iter().flat_map(|request| &request.addresses);
+    addresses.filter(|address| Some(address.address_type) != mode.target).collect()
 }

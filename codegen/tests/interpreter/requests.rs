@@ -1,6 +1,6 @@
 //! Requests by name, with values as a person types them.
 
-use canspec_codegen::interpret::{Sent, Target, Targets, requests, sent, source, targets};
+use canspec_codegen::interpret::{Sent, Target, Targets, request, requests, sent, source, targets};
 use canspec_codegen::model::{Kind, Protocol};
 
 use super::{WIDE, feature, model, notes, printed, protocol, requested, written};
@@ -302,6 +302,49 @@ fn a_request_takes_the_names_of_addresses_and_no_number_without_a_name() {
     assert_eq!(refusal("relay:gprs"), why);
     let senders = ["gprs", "0x20", "32", "main"].map(|text| source(&named, text).ok());
     assert_eq!(senders, [Some(32), Some(32), Some(32), None]);
+}
+
+/// Two peers that both have a usual address.
+const EQUALS: &str = r#"
+canspec: 1
+protocol: equals
+title: A vehicle and a charger
+document: {title: Made up, version: "1"}
+length: 1
+identifier: {priority: {bits: 28..26}, page: {bits: 25..24}, format: {bits: 23..16}, target: {bits: 15..8}, source: {bits: 7..0}}
+types:
+  vehicle: {range: 0xF0..0xF7, outside: refused, send: 0xF4}
+  charger: {range: 0x50..0x5F, outside: refused, send: 0x56}
+addressing: {peer: {request: {target: vehicle, source: charger}, one: {target: charger, source: vehicle}}}
+access: {set: {request: {}, answers: {peer: nobody}}}
+messages: {limit: {section: "1", match: {format: 1}, access: [set], value: {bytes: 0}}}
+"#;
+
+/// Returns the request of `limit` that another sender makes.
+fn sent_by(protocol: &Protocol, sender: i64) -> Result<String, String> {
+    let signals = [("value".to_owned(), "7".to_owned())];
+    let target = Target::parse(protocol, "peer").map_err(|why| why.to_string())?;
+    let frame = request(protocol, None, None, "limit", &target, Some(sender), &signals);
+    frame.map(|frame| printed(&frame)).map_err(|why| why.to_string())
+}
+
+#[test]
+fn another_sender_changes_its_own_address_and_not_that_of_its_peer() {
+    let to_all = EQUALS.replace("addressing: {", "addressing: {all: {request: {target: 0xFF, source: charger}}, ");
+    let group = "{kind: j1939, section: '1', group: [page, format, target], target: target, source: source}";
+    let transport = format!("{EQUALS}transports: {{tp: {group}}}\n");
+    for spec in [&to_all, &transport] {
+        let protocol = written(spec);
+        assert_eq!(sent_by(&protocol, 0x57), Ok("0001F457#07".to_owned()));
+        let why = "limit: charger 245 is outside 80..95 (0x50..0x5F)";
+        assert_eq!(sent_by(&protocol, 0xF5), Err(why.to_owned()), "that is a vehicle");
+    }
+}
+
+#[test]
+fn nobody_says_which_of_two_equal_peers_is_the_sender() {
+    let why = "limit: the mode `peer` does not show which address is the source";
+    assert_eq!(sent_by(&written(EQUALS), 0x57), Err(why.to_owned()));
 }
 
 #[test]

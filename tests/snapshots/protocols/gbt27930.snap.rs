@@ -127,10 +127,10 @@ pub enum Target {
 }
 
 impl Target {
-    /// Returns the route from another `bms` than the usual one: `0xF4..=0xF4`.
+    /// Returns the route from another `charger` than the usual one: `0x56..=0x56`.
     #[must_use]
-    pub fn sent_by(self, bms: u8) -> Route<Self> {
-        Route::new(self, bms.into())
+    pub fn sent_by(self, charger: u8) -> Route<Self> {
+        Route::new(self, charger.into())
     }
 }
 
@@ -153,7 +153,7 @@ impl Destination for Target {
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Peer => IdFilter::ANY
-                .documented(Identifier::TARGET, &BMS_ADDRESS, BMS_ADDRESS.chosen(sender))?
+                .documented(Identifier::TARGET, &BMS_ADDRESS, BMS_ADDRESS.chosen(None))?
                 .documented(Identifier::SOURCE, &CHARGER_ADDRESS, CHARGER_ADDRESS.chosen(sender))?,
             Self::Everybody => IdFilter::ANY.id(Identifier::TARGET, 0xFF).documented(
                 Identifier::SOURCE,
@@ -168,7 +168,7 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Peer, Who::One) => IdFilter::ANY
                 .address(Identifier::TARGET, &CHARGER_ADDRESS, CHARGER_ADDRESS.chosen(sender))
-                .address(Identifier::SOURCE, &BMS_ADDRESS, BMS_ADDRESS.chosen(sender)),
+                .address(Identifier::SOURCE, &BMS_ADDRESS, BMS_ADDRESS.chosen(None)),
             (Self::Everybody, Who::One) => IdFilter::ANY.id(Identifier::TARGET, 0xFF),
             _ => return None,
         })
@@ -176,8 +176,8 @@ impl Destination for Target {
 
     fn shown(way: &Way) -> Option<Route<Self>> {
         Some(match way.place() {
-            (0, None) => Route::new(Self::Peer, way.number(Identifier::TARGET, &BMS_ADDRESS)),
-            (0, Some(Who::One)) => Route::new(Self::Peer, way.number(Identifier::SOURCE, &BMS_ADDRESS)),
+            (0, None) => Route::new(Self::Peer, way.number(Identifier::SOURCE, &CHARGER_ADDRESS)),
+            (0, Some(Who::One)) => Route::new(Self::Peer, way.number(Identifier::TARGET, &CHARGER_ADDRESS)),
             (1, None) => Route::new(Self::Everybody, way.number(Identifier::SOURCE, &CHARGER_ADDRESS)),
             (1, Some(Who::One)) => Self::Everybody.into(),
             _ => return None,

@@ -239,6 +239,7 @@ fn id_filter(
             address(place, kind, quote!(#number))
         }
         Value::Sender(kind) => address(place, kind, quote!(#kind.chosen(sender))),
+        Value::Usual(kind) => address(place, kind, quote!(#kind.chosen(None))),
     });
     quote!(IdFilter::ANY #(#fields)*)
 }

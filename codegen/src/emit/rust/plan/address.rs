@@ -1,5 +1,6 @@
 //! Addresses, addressing modes, and the targets of requests.
 
+use indexmap::IndexSet;
 use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
@@ -80,7 +81,7 @@ pub struct Address {
 pub struct Targets {
     /// The variants, one for each mode that has requests.
     pub variants: Vec<Target>,
-    /// The kind of address that requests are sent from.
+    /// The kinds of addresses that requests are sent from.
     pub sender: Option<Sender>,
 }
 
@@ -120,20 +121,22 @@ pub enum Value {
     Target(Ident),
     /// The sender's address. The identifier is the constant of its kind.
     Sender(Ident),
+    /// The usual address of a kind. The identifier is the constant of the kind.
+    Usual(Ident),
 }
 
-/// The kind of address that requests are sent from.
+/// The kinds of addresses that requests are sent from.
 pub struct Sender {
     /// The argument.
     pub argument: Ident,
-    /// Type of its number.
+    /// Type of their numbers.
     pub number: Number,
     /// Comment of the method.
     pub comment: Comment,
 }
 
 /// The type of an address number.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Number {
     /// Eight bits.
     U8,
@@ -250,7 +253,7 @@ impl Targets {
         let mut texts = Pool::default();
         let target = |(id, request)| Target::new(protocol, addresses, &names[id], &mut texts, id, request);
         let variants: Vec<_> = modes.map(target).collect();
-        (!variants.is_empty()).then(|| Self { variants, sender: sender(protocol).map(Sender::new) })
+        (!variants.is_empty()).then(|| Self { variants, sender: Sender::of(protocol) })
     }
 }
 
@@ -270,7 +273,7 @@ impl Target {
         request: &AddressPattern,
     ) -> Self {
         let mode = &protocol[id];
-        let shown = |pattern: &AddressPattern| Shown::all(protocol, addresses, mode.target, request, pattern);
+        let shown = |pattern: &AddressPattern| Shown::all(protocol, addresses, mode, request, pattern);
         let replies = [("One", &mode.one), ("Each", &mode.each), ("Coordinator", &mode.coordinator)];
         let replies = replies.into_iter().filter_map(|(who, pattern)| Some((ident(who), shown(pattern.as_ref()?))));
         let address = mode.target.map(|address| &protocol[address]);
@@ -295,39 +298,47 @@ impl Shown {
     fn all(
         protocol: &Protocol,
         kinds: &Addresses,
-        target: Option<AddressTypeId>,
+        mode: &model::Mode,
         request: &AddressPattern,
         pattern: &AddressPattern,
     ) -> Vec<Self> {
+        let controller = protocol.controller(mode);
+        let value_of = |known: AddressTypeId| match kinds[known].clone() {
+            kind if mode.target == Some(known) => Value::Target(kind),
+            kind if controller == Some(known) => Value::Sender(kind),
+            kind => Value::Usual(kind),
+        };
         let Pattern { constants, .. } = Pattern::new(protocol, kinds, pattern);
         let constants = constants.into_iter().map(|(place, value)| Self { place, value: Value::Constant(value) });
         let is_known =
             |known: &&model::Address| request.addresses.iter().any(|own| own.address_type == known.address_type);
-        let addresses = pattern.addresses.iter().filter(is_known).map(|known| {
-            let kind = kinds[known.address_type].clone();
-            let value = if target == Some(known.address_type) { Value::Target(kind) } else { Value::Sender(kind) };
-            Self { place: field_place(protocol, known.field).0, value }
-        });
+        let addresses = pattern
+            .addresses
+            .iter()
+            .filter(is_known)
+            .map(|known| Self { place: field_place(protocol, known.field).0, value: value_of(known.address_type) });
         constants.chain(addresses).collect()
     }
 }
 
-/// Finds the kind of address that a request is sent from.
-fn sender(protocol: &Protocol) -> Option<&model::AddressType> {
-    let requests = protocol.modes.iter().filter_map(|mode| Some((mode, mode.request.as_ref()?)));
-    let mut senders = requests.flat_map(|(mode, request)| {
-        request.addresses.iter().filter(|address| Some(address.address_type) != mode.target)
-    });
-    senders.next().map(|address| &protocol[address.address_type])
-}
-
 impl Sender {
-    fn new(sender: &model::AddressType) -> Self {
-        let text = format!("Returns the route from another `{}` than the usual one: {}.", sender.name, range(sender));
-        Self {
-            argument: ident(&sender.name.to_ascii_lowercase()),
-            number: Number::of(sender),
-            comment: Comment::line(text),
-        }
+    /// Plans the senders of all modes; `None` if no request shows its own.
+    fn of(protocol: &Protocol) -> Option<Self> {
+        let kinds: IndexSet<_> = protocol.modes.iter().filter_map(|mode| protocol.controller(mode)).collect();
+        let kinds: Vec<_> = kinds.into_iter().map(|kind| &protocol[kind]).collect();
+        let (name, numbers) = match kinds.as_slice() {
+            [only] => {
+                (only.name.to_ascii_lowercase(), format!("another `{}` than the usual one: {}", only.name, range(only)))
+            }
+            several => {
+                let several: Vec<_> = several.iter().map(|kind| format!("`{}`: {}", kind.name, range(kind))).collect();
+                ("sender".to_owned(), format!("another sender than the usual one. {}", several.join("; ")))
+            }
+        };
+        Some(Self {
+            argument: ident(&name),
+            number: kinds.into_iter().map(Number::of).max()?,
+            comment: Comment::line(format!("Returns the route from {numbers}.")),
+        })
     }
 }

@@ -70,14 +70,13 @@ impl Planner<'_> {
     }
 
     fn route(&self, mode: &model::Mode, pattern: &AddressPattern, variant: &Ident) -> Option<Route> {
-        let request = mode.request.as_ref()?;
+        mode.request.as_ref()?;
         let target = match mode.target {
             Some(kind) => Some((self.shown(pattern, kind)?, Number::of(&self.protocol[kind]))),
             None => None,
         };
-        let mut senders = request.addresses.iter().map(|address| address.address_type);
-        let sender = senders.find(|kind| Some(*kind) != mode.target);
-        Some(Route { variant: variant.clone(), target, sender: sender.and_then(|kind| self.shown(pattern, kind)) })
+        let sender = self.protocol.controller(mode).and_then(|kind| self.shown(pattern, kind));
+        Some(Route { variant: variant.clone(), target, sender })
     }
 
     /// Finds the field that holds a kind of address.
