@@ -215,9 +215,21 @@ fn no_part_of_values_outside_their_limits_is_built_for_a_module() {
 }
 
 #[test]
+fn what_a_module_said_before_does_not_count_what_it_confirms() {
+    let state = Frame::new_raw(0x053, false, [1, 0, 0, 0, 0, 0, 0, 0], 8);
+    let sent = program(210.0).set(Target::Oven(3)).expect("it fits");
+    let answers = sent.map(|frame| Frame::new_raw(0x0B3, false, frame.bytes(), 8));
+    let mut assembler = Assembler::<Program, 4>::new(100);
+    assert_eq!([state].into_iter().chain(answers).flat_map(|frame| assembler.receive(&frame, 0)).count(), 0);
+    let Some(Outcome::Whole(whole)) = assembler.finish() else { panic!("both parts came") };
+    assert_eq!(&whole.values.temperature_c[..3], &*program(210.0).temperature_c);
+    assert!(!whole.is_counted);
+}
+
+#[test]
 fn what_goes_to_a_module_is_not_mixed_with_what_comes_from_it() {
     let sent = program(210.0).set(Target::Oven(3)).expect("it fits");
-    let answer = |frame: &Frame| Frame::new_raw(frame.raw_id() | 0x10, false, frame.bytes(), 8);
+    let answer = |frame: &Frame| Frame::new_raw(0x093, false, frame.bytes(), 8);
     let mut assembler = Assembler::<Program, 4>::new(100);
     let frames = sent.flat_map(|frame| [frame, answer(&frame)]).collect::<Vec<_>>();
     // Byte 0 has the number of steps of what the module says. What it is sent may have another one.

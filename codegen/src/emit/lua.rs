@@ -105,9 +105,11 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     let tells_sender = protocol.sides.are_named() || frame.kind == Kind::Report && frame.is_to_module();
     let is_report_to_module = frame.kind == Kind::Report && frame.is_to_module();
     let set = frame.set.and_then(|set| Some((&protocol[set].name, protocol[set].set.as_ref()?)));
+    let is_told = protocol.part_of(frame).is_some() && protocol.is_told(frame);
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
+        .maybe("told", is_told.then(|| Value::flag(true)))
         .maybe("to_module", is_report_to_module.then(|| Value::flag(true)))
         .maybe("sender", tells_sender.then(|| Value::text(protocol.sides.name(frame.sender))))
         .with("lengths", Value::map(frame.lengths.iter().map(|length| (Value::number(*length), Value::flag(true)))))

@@ -203,10 +203,11 @@ impl<M: Clone> Assembly<M> {
                 self.transfers.len() - 1
             }
         };
+        let transfer = &mut self.transfers[open];
+        (transfer.frame, transfer.decoded, transfer.since) = (frame.clone(), decoded.clone(), now);
         let count = self.count(protocol, &self.transfers[open]);
         let transfer = &mut self.transfers[open];
         let expected = if part.is_last { Some(part.index + 1) } else { transfer.expected(long, count) };
-        (transfer.frame, transfer.decoded, transfer.since) = (frame.clone(), decoded.clone(), now);
         let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
         transfer.parts.push((part.index, part.data, mark));
         transfer.is_ended = part.is_last;
@@ -234,13 +235,14 @@ impl<M: Clone> Assembly<M> {
         }
     }
 
-    /// Returns how many elements the array of a message really has, if the device has said it. What is sent to the
-    /// device may change that number.
+    /// Returns how many elements the array of a message really has, if the device has said it. What it is told may
+    /// change that number.
     fn count(&self, protocol: &Protocol, transfer: &Transfer<M>) -> Option<usize> {
         if self.count.is_some() {
             return self.count;
         }
-        let signal = protocol[transfer.long].parts()?.count.filter(|_| transfer.sender == Side::Module)?;
+        let is_told = protocol.is_told(&protocol[transfer.decoded.frame]);
+        let signal = protocol[transfer.long].parts()?.count.filter(|_| !is_told)?;
         let node = module(protocol, &transfer.peers);
         self.counts.iter().find(|known| (&known.node, known.signal) == (&node, signal)).map(|known| known.value)
     }

@@ -6,8 +6,8 @@ use canspec_runtime::Place;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
-    ByteRun, Doc, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
-    TimingId, Transport, TransportId, place,
+    ByteRun, Doc, FrameLayout, Groups, Kind, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal,
+    SignalId, TimingId, Transport, TransportId, place,
 };
 
 /// What the data of several frames say together.
@@ -214,6 +214,13 @@ impl Protocol {
     /// Returns the long message whose part a frame carries.
     pub fn part_of(&self, frame: &FrameLayout) -> Option<LongMessageId> {
         self.in_parts(&self[frame.message]).filter(|_| !frame.signals.is_empty())
+    }
+
+    /// Tests whether a frame says what a module is told: it goes there, or confirms a request with values.
+    pub(crate) fn is_told(&self, frame: &FrameLayout) -> bool {
+        let has_values = |other: &FrameLayout| other.is_to_module() && !other.signals.is_empty();
+        let mut exchanged = self.frames_of(&self[frame.message]).filter(|other| other.exchange == frame.exchange);
+        frame.is_to_module() || frame.kind == Kind::Reply && exchanged.any(has_values)
     }
 
     /// Returns the long message that a transport carries, if the message travels so.

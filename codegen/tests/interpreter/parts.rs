@@ -37,14 +37,21 @@ fn a_part_whose_number_is_not_greater_ends_the_message_before() {
 }
 
 #[test]
-fn what_a_device_said_last_does_not_count_what_it_is_sent() {
+fn what_a_device_said_last_does_not_count_what_it_is_told_and_confirms() {
     let ovens = feature("parts_to_modules");
     let frames = ["053#0100000000000000", "0A3#010A070807D00800", "0A3#0234000000000000"];
-    check(&ovens, &frames, (vec![(vec![1, 2], None)], vec![0]));
-    let (ended, _) = assembled(&ovens, &frames);
-    assert!(ended[0].decoded.notes.iter().any(|note| note.rule == NoteRule::Count));
-    // What the device says itself has one temperature, so the second part belongs to no message of it.
-    let own = frames.map(|frame| frame.replace("0A3", "0B3"));
+    let from = |id| frames.map(|frame| frame.replace("0A3", id));
+    for told in [from("0A3"), from("0B3")] {
+        let told = told.each_ref().map(String::as_str);
+        check(&ovens, &told, (vec![(vec![1, 2], None)], vec![0]));
+        let (ended, _) = assembled(&ovens, &told);
+        assert!(ended[0].decoded.notes.iter().any(|note| note.rule == NoteRule::Count));
+    }
+    // The last part says what it is, when the device confirms in the middle of what it says itself.
+    let mixed = ["053#0300000000000000", "093#010A070807D00800", "0B3#0234000000000000", "0B3#0300000000000000"];
+    check(&ovens, &mixed, (vec![(vec![1, 2, 3], None)], vec![0]));
+    // A program that is read has one temperature, so the second part belongs to no message.
+    let own = from("093");
     let own = own.each_ref().map(String::as_str);
     check(&ovens, &own, (vec![(vec![1], None), (vec![2], Some("part 1 is missing"))], vec![0]));
 }

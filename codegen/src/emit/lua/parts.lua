@@ -152,13 +152,13 @@ local function take_part(frame, decoded, ended)
   end
   if not is_its or open.last >= part.index then
     if open then end_parts(open, nil, ended) end
-    -- What is sent to a device may change how many elements it has.
-    local counted = not is_to_module(decoded.layout) and peers(frame, decoded, true) .. " " .. message.name
-    open = { key = this, counted = counted, long = long, first = first, parts = {} }
+    open = { key = this, long = long, first = first, parts = {} }
     open.counter, open.announced = part.counter, part.announced
     open.interface, open.number = frame.interface, frame.number
     open_parts[this] = open
   end
+  -- What a device is told may change how many elements it has.
+  open.counted = not decoded.layout.told and peers(frame, decoded, true) .. " " .. message.name
   open.last, open.parts[part.index], open.since = part.index, part.data, frame.time
   open.is_ended = not long.parts.length and is_last(frame)
   local expected = open.is_ended and part.index + 1 or expected_parts(open, counts[open.counted])

@@ -26,6 +26,8 @@ pub struct Assembler<L: Parted, const N: usize> {
 struct Transfer<L: Parted> {
     peers: Peers,
     buffer: Buffer<L::Memory>,
+    /// Whether it is what a node is told: it goes there, or confirms a request with values.
+    is_told: bool,
     /// Whether the last frame said that no other follows, or silence did.
     is_ended: bool,
     /// The last frame.
@@ -116,7 +118,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         }
         let Some(peers) = Peers::of(received) else { return Outcomes::NONE };
         match (said, self.part(received)) {
-            (Said::Part, Some(part)) => self.add(peers, part, received.frame(), now),
+            (Said::Part, Some(part)) => self.add(peers, part, received, now),
             (Said::Count(place), _) if place.is_within(received.frame().length()) => {
                 let elements = usize::try_from(place.get(&received.frame().bytes())).unwrap_or(usize::MAX);
                 self.keep_count(Count { node: peers, elements });
@@ -161,7 +163,9 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     }
 
     /// Adds a part to the message that its node sends, or begins another.
-    fn add(&mut self, peers: Peers, part: Part, frame: &Frame, now: u32) -> Outcomes<L> {
+    fn add(&mut self, peers: Peers, part: Part, received: &Received<L::Protocol>, now: u32) -> Outcomes<L> {
+        let (frame, exchange) = (received.frame(), received.exchange());
+        let is_told = peers.is_to_module() || received.kind() == Kind::Reply && exchange.has_values();
         let open = self.taken(|open| open.peers.are(&peers)).map(|open| open.at(now));
         let (open, before) = match open {
             Some(open) if open.repeats(&part) => {
@@ -171,7 +175,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
             Some(open) if open.is_before(&part) => (open, None),
             other => (Transfer::new(peers, frame, now), other.map(|open| self.ended(&open, None))),
         };
-        let mut open = Transfer { is_ended: part.is_last, frame: *frame, since: now, ..open };
+        let mut open = Transfer { is_told, is_ended: part.is_last, frame: *frame, since: now, ..open };
         open.buffer.put(part.index, part.data::<L>());
         let count = part.index.saturating_add(1);
         let expected = if part.is_last { Some(count) } else { expected::<L>(&open.buffer, self.count(&open)) };
@@ -200,10 +204,10 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         }
     }
 
-    /// Returns how many elements the arrays of a message have, if its node has said it. What is sent to the node may
+    /// Returns how many elements the arrays of a message have, if its node has said it. What the node is told may
     /// change that number.
     fn count(&self, open: &Transfer<L>) -> Option<usize> {
-        let mut own = self.counts.iter().flatten().filter(|_| !open.peers.is_to_module());
+        let mut own = self.counts.iter().flatten().filter(|_| !open.is_told);
         let known = own.find(|known| known.node.are_of_module(&open.peers));
         known.map(|known| known.elements)
     }
@@ -236,7 +240,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
 
 impl<L: Parted> Transfer<L> {
     fn new(peers: Peers, frame: &Frame, now: u32) -> Self {
-        Self { peers, buffer: Buffer::new(size::<L>()), is_ended: false, frame: *frame, since: now }
+        Self { peers, buffer: Buffer::new(size::<L>()), is_told: false, is_ended: false, frame: *frame, since: now }
     }
 
     /// Returns what it is at a time: silence may have ended it.
