@@ -309,3 +309,23 @@ fn limits_of_fields_hold_before_the_first_part_is_printed() {
     let (out, refused) = call(&["part=1", "data=0A070807D008"]);
     assert!(out.is_empty() && refused.contains("there is no signal"), "{refused}");
 }
+
+#[test]
+fn what_fills_up_the_last_part_of_a_request_is_made_again_although_it_is_outside_the_limits() {
+    let request = ["0A3#010A070807D00800", "0A3#0234000000000000"];
+    let whole = |log: &str| {
+        let call = ["decode", "--assemble", "--format", "jsonl", "-"];
+        let (out, _) = canspec_with("parts_to_modules.yaml", &call, log);
+        out.lines().filter(|line| line.contains("\"lines\"")).map(str::to_owned).collect::<String>()
+    };
+    let again = |line: &str| canspec_with("parts_to_modules.yaml", &["encode", "--from", "jsonl", "-"], line);
+    let line = whole(&request.join("\n"));
+    let object: Value = serde_json::from_str(&line).expect("a line is an object");
+    assert_eq!(object["signals"]["temperature"]["raw"], json!([1800, 2000, 2100, 0, 0]));
+    assert_eq!(again(&line).0.split_whitespace().collect::<Vec<_>>(), request);
+    // A temperature before others is none that fills up, and neither is one that has some bits.
+    for cold in ["0A3#0234000007080000", "0A3#0234000100000000"] {
+        let (out, refused) = again(&whole(&[request[0], cold].join("\n")));
+        assert!(out.is_empty() && refused.contains("outside 20..300 °C"), "{out}{refused}");
+    }
+}

@@ -66,9 +66,11 @@ fn encode_parts(
     let counter = counter.map(|name| (name.clone(), Input::Integer(given.map_or(0, |(_, value)| value.into()))));
     let bare = Content { selectors: selectors.clone(), ..content.clone() };
     let layout = layout(protocol, message, protocol.frames_of(message), &bare, identifier(protocol, content)?)?;
-    let limits = (model, Limits::of(layout, model));
-    let whole = (known.whole(), [0; 8]);
-    let data = long::joined(protocol, whole, &content.signals, Some(&content.reserved), limits)?;
+    let (whole, reserved) = ((known.whole(), [0; 8]), Some(&*content.reserved));
+    let data = long::joined(protocol, whole, &content.signals, reserved, (model, Limits::Bits))?;
+    // Nothing says whether elements at the end are real, so what looks like filling is tested against no limits.
+    let real = long::real(known, &data, &content.signals);
+    long::joined(protocol, whole, &real, reserved, (model, Limits::of(layout, model)))?;
     let mut frames = Vec::new();
     for (number, data) in long::parts(known, model, &data)? {
         let mut signals = vec![

@@ -243,6 +243,24 @@ fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
     whole
 }
 
+/// Returns what is given without those elements at the end that look like what fills up the last part. A message that
+/// says its length has none.
+pub fn real(long: &LongMessage, data: &[u8], given: &[(String, Input)]) -> Vec<(String, Input)> {
+    let is_open = long.parts().is_some_and(|parts| parts.length.is_none());
+    let array = long.varying().filter(|field| is_open && !field.is_text);
+    let whole = filled(long, data);
+    let is_enough = |count: &usize| {
+        let start = data.get(..long.bytes_with(Some(*count)));
+        start.is_some_and(|start| filled(long, start) == whole)
+    };
+    let count = array.and_then(|array| (array.least..array.most).find(is_enough));
+    let is_real = |name: &str| {
+        let signal = long.content.signals.iter().find(|signal| signal.name == name);
+        signal.is_none_or(|signal| long.is_among(count, signal))
+    };
+    given.iter().filter(|(name, _)| is_real(name)).cloned().collect()
+}
+
 /// Makes the frames of what a call writes: one, or as many as a message in parts has. `one` makes a frame of the texts for
 /// its signals.
 pub fn typed_frames(
