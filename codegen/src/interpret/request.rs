@@ -396,18 +396,18 @@ pub fn put_signals(
     Ok(())
 }
 
-/// Says why a request has no place for a value.
+/// Says why a frame has no place for a value.
 fn not_carried(protocol: &Protocol, message: &Message, layout: &FrameLayout, name: &str) -> String {
     let access = &protocol[layout.access].name;
-    let carries = |frame: &&FrameLayout| carried(protocol, frame).contains(&name);
-    let senders = protocol.frames_of(message).filter(|frame| frame.is_to_module()).filter(carries);
-    let senders: Vec<_> = senders.map(|frame| format!("`{}`", protocol[frame.access].name)).collect();
+    let carriers = protocol.frames_of(message).filter(|frame| carried(protocol, frame).contains(&name));
+    let by = |frame: &FrameLayout| format!("a {} by `{}`", frame.kind.name(), protocol[frame.access].name);
+    let is_choice = |frame: &&FrameLayout| frame.is_to_module() || !layout.is_to_module();
+    let others: Vec<_> = carriers.clone().filter(is_choice).map(by).collect();
     let sent: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| format!("`{}`", signal.name)).collect();
-    let content = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
-    match (content.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {
-        (true, _) if senders.is_empty() => format!("`{name}` is read only: `{access}` asks for it"),
-        (true, _) => format!("`{access}` does not send `{name}`; {} does", senders.join(", ")),
-        (false, true) => format!("there is no signal `{name}`; `{access}` sends none"),
-        (false, false) => format!("there is no signal `{name}`; `{access}` sends {}", sent.join(", ")),
+    match (carriers.count(), others.as_slice(), sent.is_empty()) {
+        (0, _, true) => format!("there is no signal `{name}`; `{access}` sends none"),
+        (0, _, false) => format!("there is no signal `{name}`; `{access}` sends {}", sent.join(", ")),
+        (_, [], _) => format!("`{name}` is read only: `{access}` asks for it"),
+        (..) => format!("{} does not carry `{name}`; {} does", by(layout), others.join(", or ")),
     }
 }

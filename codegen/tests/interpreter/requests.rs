@@ -421,3 +421,17 @@ fn the_last_part_is_filled_up_with_bits_as_they_are_sent() {
     let pack = [&pack[..], &[("voltage", voltages.as_str()), ("group", "3,2")]].concat();
     assert_eq!(last_part("long_fields", ("pack", Kind::Report), &pack).as_deref(), Some("611#0B03FFFFFFFFFFFF"));
 }
+
+#[test]
+fn a_value_that_only_another_kind_of_frame_carries_is_refused_with_the_name_of_that_kind() {
+    let in_request = written(&WIDE.replace("reply: {}, answers", "reply: {}, in: [request], answers"));
+    let reply =
+        Sent { kind: Some(Kind::Reply), access: None, model: None, message: "positive", to: None, source: Some(1) };
+    let refused = sent(&in_request, reply, &[("value".to_owned(), "1".to_owned())]).map_err(|why| why.to_string());
+    let why = "positive: a reply by `set` does not carry `value`; a request by `set` does";
+    assert_eq!(refused.err().as_deref(), Some(why));
+    let oven = feature("parts_to_modules");
+    let refused = requested(&oven, None, "read program", "oven:3", &[("hold", "10")]).map_err(|why| why.to_string());
+    let why = "program: a request by `read` does not carry `hold`; a request by `set` does";
+    assert_eq!(refused.err().as_deref(), Some(why));
+}
