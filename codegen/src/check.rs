@@ -12,6 +12,7 @@ mod no_example;
 mod no_limit;
 mod no_match;
 mod no_model;
+mod no_refusal;
 mod no_unit;
 mod nobody_replies;
 mod outside_frame;
@@ -45,7 +46,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 32] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 33] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -65,6 +66,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 32] = [
     (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),
     (&no_match::NO_MATCH, Some(no_match::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
+    (&no_refusal::NO_REFUSAL, Some(no_refusal::check)),
     (&role::ROLE, Some(role::check)),
     (&rules::QUANTITY_PATH, Some(quantity_path::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
