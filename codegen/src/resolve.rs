@@ -37,7 +37,7 @@ mod units;
 
 use std::collections::{HashMap, HashSet};
 
-use indexmap::IndexSet;
+use indexmap::{IndexMap, IndexSet};
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::Words;
@@ -83,6 +83,8 @@ struct Tables {
     status_words: Table<StatusWordId, model::StatusWord>,
     /// Where the spec says how wide the widest place of each status word is.
     widest_words: Table<StatusWordId, At>,
+    /// The bits that are named by their byte, each in all words that have it.
+    bits_by_byte: IndexMap<Path, status::BitByByte>,
     /// Remarks of words. Words are no signals themselves.
     words: Vec<model::Doc>,
     /// Fields that were given up because of an error, by message. What examples say about them is
@@ -125,6 +127,7 @@ impl Resolver<'_> {
         let accesses = self.accesses(&modes, &timing);
         let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         self.check_width_of_words();
+        self.check_bits_by_byte();
         let foreign = self.foreign(&identifier);
         let quantities = self.quantities(&messages);
         let examples = self.examples(&identifier, &messages);

@@ -1,5 +1,7 @@
 //! Makes status words: which bit has which name.
 
+use std::mem;
+
 use canspec_runtime::Place;
 use indexmap::IndexMap;
 
@@ -9,6 +11,7 @@ use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, StatusBit, StatusWord, StatusWordId};
+use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key};
 use crate::syntax::tree::Path;
@@ -25,9 +28,18 @@ struct Entry {
     count: usize,
 }
 
+/// A bit that is named by its byte in the frame.
+pub struct BitByByte {
+    name: String,
+    byte: u8,
+    /// Each word that has it, and its number there.
+    words: Vec<(At, Option<u8>)>,
+}
+
 impl Resolver<'_> {
     /// Finds or makes the status word of a field. Its bits may lie anywhere, until the widest place of the word is known.
     pub fn status_word(&mut self, merged: &Merged, otherwise: &str, place: Place, doc: &Doc) -> StatusWordId {
+        self.keep_bits_by_byte(merged, place);
         let (name, source) = self.type_name(merged, Key::Status, otherwise);
         let made = |known: &StatusWord| known.name == name && known.doc.path == source;
         if let Some(index) = self.tables.status_words.position(made) {
@@ -35,7 +47,6 @@ impl Resolver<'_> {
                 self.tables.status_words[index].width = place.width();
                 self.tables.widest_words[index] = self.place_of_word(merged);
             }
-            self.check_same_bytes(merged, place, index);
             return index;
         }
         let doc = self.type_doc(&name, &source, doc);
@@ -96,19 +107,36 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tests that bits named by their byte have the same numbers as where the type stands first.
-    fn check_same_bytes(&mut self, merged: &Merged, place: Place, index: StatusWordId) {
+    /// Remembers which bits of a word are named by their byte.
+    fn keep_bits_by_byte(&mut self, merged: &Merged, place: Place) {
         let path = merged.path(self.diagnostics, Key::Status);
-        for (name, bit) in merged.field.status.iter().flatten().filter(|(_, bit)| bit.byte.is_some()) {
-            let known = self.tables.status_words[index].bits.iter().find(|known| known.doc.path == path.key(name));
-            let number = in_byte(bit, place);
-            if known.is_some_and(|known| Some(known.bit) != number) {
-                let text = format!("`{name}` is another bit here than where its type stands first");
-                let help = "a `byte` counts in the frame; write `bit` alone, which counts in the word";
-                let at = merged.path(self.diagnostics, Key::Bytes).at_value();
-                let problem = Diagnostic::error(&rules::STATUS_BIT, at, text).help(help);
-                self.diagnostics.push(problem.other(path.key(name).key("byte").at_value(), "the bit"));
-            }
+        for (name, bit) in merged.field.status.iter().flatten() {
+            let Some((byte, bit)) = byte_and_bit(bit) else { continue };
+            let word = (self.place_of_word(merged), in_byte(byte, bit, place));
+            let known = self.tables.bits_by_byte.entry(path.key(name));
+            known.or_insert_with(|| BitByByte { name: name.clone(), byte, words: Vec::new() }).words.push(word);
+        }
+    }
+
+    /// Tests that each bit which is named by its byte is one bit of its word, the same wherever its type stands.
+    pub fn check_bits_by_byte(&mut self) {
+        for (path, BitByByte { name, byte, words }) in mem::take(&mut self.tables.bits_by_byte) {
+            let Some((first, number)) = words.first() else { continue };
+            let at = path.key("byte").at_value();
+            let problem = match words.iter().find(|(_, other)| other != number) {
+                Some((other, _)) => {
+                    let text = format!("`{name}` is not the same bit in each word of its type");
+                    let help = "a `byte` counts in the frame; write `bit` alone, which counts in the word";
+                    let problem = Diagnostic::error(&rules::STATUS_BIT, at, text).help(help);
+                    problem.other(first.clone(), "a word").other(other.clone(), "another one")
+                }
+                None if number.is_none() => {
+                    let help = "a `byte` counts in the frame, from 0; correct it, or the place of the word";
+                    Diagnostic::error(&rules::NUMBER, at, format!("byte {byte} is not in this word")).help(help)
+                }
+                None => continue,
+            };
+            self.diagnostics.push(problem);
         }
     }
 
@@ -172,15 +200,9 @@ impl Resolver<'_> {
     fn number_of_bit(&mut self, path: &Path, bit: &ast::StatusBit, word: Place) -> Option<u8> {
         let at = path.key("bit");
         let Some(byte) = &bit.byte else { return self.integer(&at, &bit.bit, 0, u8::MAX) };
-        let byte = self.integer(&path.key("byte"), byte, 0, 7)?;
+        self.integer(&path.key("byte"), byte, 0, 7_u8)?;
         self.integer(&at, &bit.bit, 0, 7)?;
-        let number = in_byte(bit, word);
-        if number.is_none() {
-            let text = format!("byte {byte} is not in this word");
-            let help = "a `byte` counts in the frame, from 0; correct it, or the place of the word";
-            self.error_with_help(&rules::NUMBER, path.key("byte").at_value(), text, help);
-        }
-        number
+        byte_and_bit(bit).and_then(|(byte, bit)| in_byte(byte, bit, word))
     }
 
     fn check_status_bits(&mut self, bits: &[StatusBit]) {
@@ -204,11 +226,17 @@ impl Resolver<'_> {
     }
 }
 
+/// Reads the byte of a bit, and its number there.
+fn byte_and_bit(bit: &ast::StatusBit) -> Option<(u8, u8)> {
+    let number = |text: &str| Rational::parse(text)?.to_integer().and_then(|number| u8::try_from(number).ok());
+    let (byte, bit) = (number(bit.byte.as_ref()?)?, number(&bit.bit)?);
+    (byte < 8 && bit < 8).then_some((byte, bit))
+}
+
 /// Returns the number in its word of a bit that is named by its byte in the frame.
-fn in_byte(bit: &ast::StatusBit, place: Place) -> Option<u8> {
-    let (byte, bit): (usize, u32) = (bit.byte.as_ref()?.parse().ok()?, bit.bit.parse().ok()?);
+fn in_byte(byte: u8, bit: u8, place: Place) -> Option<u8> {
     let mut data = [0; 8];
-    *data.get_mut(byte)? = 1_u8.checked_shl(bit)?;
+    *data.get_mut(usize::from(byte))? = 1_u8.checked_shl(bit.into())?;
     u8::try_from(place.get(&data).trailing_zeros()).ok().filter(|number| *number < WIDEST)
 }
 
