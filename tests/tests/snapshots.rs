@@ -6,7 +6,7 @@ use canspec_codegen::emit::{self, Options, Scaled, Switch};
 use canspec_tests::{protocol, specs};
 
 /// Snapshots of one-feature specs stay short enough to be read.
-const LINES: usize = 460;
+const LINES: usize = 470;
 
 /// The frames of a transport take as many more. They are the same in each spec.
 const TRANSPORT_LINES: usize = 440;

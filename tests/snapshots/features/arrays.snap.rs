@@ -180,6 +180,7 @@ impl Layout for Cells {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(4);
@@ -238,6 +239,7 @@ impl Layout for State {
         valve: [Self::VALVE_1.get(data), Self::VALVE_2.get(data), Self::VALVE_3.get(data), Self::VALVE_4.get(data)],
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CURRENT_1.encode(self.current_a[0], payload)?;

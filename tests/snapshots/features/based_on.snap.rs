@@ -152,6 +152,7 @@ impl Layout for Speed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_rpm, payload)
@@ -189,6 +190,7 @@ impl Layout for Temperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_c, payload)

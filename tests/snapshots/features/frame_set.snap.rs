@@ -240,6 +240,7 @@ impl Layout for Heat {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value_c, payload)
@@ -268,6 +269,7 @@ impl Layout for Power {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)

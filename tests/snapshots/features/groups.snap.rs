@@ -179,6 +179,7 @@ impl Layout for State {
         warnings_level_v: Self::WARNINGS_LEVEL.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::ALARMS_LEVEL.encode(self.alarms_level_v, payload)?;

@@ -433,6 +433,7 @@ impl Layout for TpSingleFrame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(2);
@@ -505,6 +506,7 @@ impl Layout for TpFirstFrame {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { size: Self::SIZE.get(data), data: Self::DATA.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SIZE.put(self.size, payload)?;
@@ -596,6 +598,7 @@ impl Layout for TpConsecutiveFrame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(2);
@@ -693,6 +696,7 @@ impl Layout for TpFlowControl {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(3);

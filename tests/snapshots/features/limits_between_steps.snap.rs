@@ -173,6 +173,7 @@ impl Layout for SetLimit {
         cold_c: Self::COLD.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CURRENT.encode(self.current_a, payload)?;
@@ -212,6 +213,7 @@ impl Layout for SetTotal {
     const SIGNALS: AnySignals = &[&Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { total: Self::TOTAL.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::TOTAL.put(self.total, payload)

@@ -170,6 +170,7 @@ impl Layout for SupplyAc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -199,6 +200,7 @@ impl Layout for SupplyDc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)

@@ -227,6 +227,7 @@ impl Layout for SetSpeed {
     const DECODE: Decode<Self> =
         |data| Self { speed_rpm: Self::SPEED.get(data), flow_percent: Self::FLOW.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SPEED.put(self.speed_rpm, payload)?;

@@ -281,6 +281,7 @@ impl Layout for Switch {
     const SIGNALS: AnySignals = &[&Self::POWER, &Self::LAMP];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data), lamp: Self::LAMP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::POWER.put(self.power, payload)?;

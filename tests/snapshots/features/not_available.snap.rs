@@ -272,6 +272,7 @@ impl Layout for Limits {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(5);

@@ -195,6 +195,7 @@ impl Layout for State {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(3);
@@ -253,6 +254,7 @@ impl Layout for Limit {
         Self { current_a: Self::CURRENT.get(data), ramp_s: Self::RAMP.get_some(data, length) }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(1);

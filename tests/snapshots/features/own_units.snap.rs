@@ -180,6 +180,7 @@ impl Layout for SetDose {
     const DECODE: Decode<Self> =
         |data| Self { flow_l_per_min: Self::FLOW.decode(data), weight_kg: Self::WEIGHT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::FLOW.encode(self.flow_l_per_min, payload)?;

@@ -173,6 +173,7 @@ impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::CELLS];
     const DECODE: Decode<Self> = |data| Self { cells: Self::CELLS.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CELLS.put(self.cells, payload)
@@ -255,6 +256,7 @@ impl Layout for CellsPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PART.put(self.part, payload)?;

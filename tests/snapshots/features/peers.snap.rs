@@ -250,7 +250,12 @@ impl Limits {
 impl Layout for Limits {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.encode(message.current_a, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -286,11 +286,14 @@ impl Layout for Control {
     const SIGNALS: AnySignals = &[&Self::MODE, &Self::POWER, &Self::VOLTAGE];
     const DECODE: Decode<Self> =
         |data| Self { mode: Self::MODE.get(data), power: Self::POWER.get(data), voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MODE.put(message.mode, payload)?;
-        Self::POWER.put(message.power, payload)?;
-        Self::VOLTAGE.encode(message.voltage_v, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)?;
+        Self::POWER.put(self.power, payload)?;
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Every message that a frame can carry.

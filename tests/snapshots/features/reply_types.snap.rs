@@ -164,7 +164,12 @@ impl Voltage {
 impl Layout for Voltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value_v, payload)
+    }
 }
 
 /// Revision: `register` 0x0056. Section 3.
@@ -201,10 +206,13 @@ impl Revision {
 impl Layout for Revision {
     const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::SOFTWARE];
     const DECODE: Decode<Self> = |data| Self { hardware: Self::HARDWARE.get(data), software: Self::SOFTWARE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::HARDWARE.put(message.hardware, payload)?;
-        Self::SOFTWARE.put(message.software, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::HARDWARE.put(self.hardware, payload)?;
+        Self::SOFTWARE.put(self.software, payload)
+    }
 }
 
 /// Every message that a frame can carry.

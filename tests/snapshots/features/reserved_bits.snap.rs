@@ -216,7 +216,12 @@ impl SetCurrent {
 impl Layout for SetCurrent {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.encode(message.current_a, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.encode(self.current_a, payload)
+    }
 }
 
 /// Stop: `command` 0x013. Section 3.
@@ -252,7 +257,12 @@ impl Stop {
 impl Layout for Stop {
     const SIGNALS: AnySignals = &[&Self::REASON];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::REASON.put(message.reason, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::REASON.put(self.reason, payload)
+    }
 }
 
 /// Every message that a frame can carry.

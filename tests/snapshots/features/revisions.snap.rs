@@ -265,11 +265,14 @@ impl Layout for SetLimits {
         heating: Self::HEATING.get(data),
         alarms: Self::ALARMS.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CURRENT.put(message.current_a, payload)?;
-        Self::HEATING.put(message.heating, payload)?;
-        Self::ALARMS.put(message.alarms, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.put(self.current_a, payload)?;
+        Self::HEATING.put(self.heating, payload)?;
+        Self::ALARMS.put(self.alarms, payload)
+    }
 }
 
 /// Every message that a frame can carry.

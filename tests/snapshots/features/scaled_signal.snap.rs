@@ -222,12 +222,15 @@ impl Layout for SetOutput {
         delay_s: Self::DELAY.get(data),
         power_w: Self::POWER.decode(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::VOLTAGE.encode(message.voltage_v, payload)?;
-        Self::TEMPERATURE.encode(message.temperature_c, payload)?;
-        Self::DELAY.put(message.delay_s, payload)?;
-        Self::POWER.encode(message.power_w, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)?;
+        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
+        Self::DELAY.put(self.delay_s, payload)?;
+        Self::POWER.encode(self.power_w, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -275,10 +275,13 @@ impl Layout for SetOutput {
     const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::TEMPERATURE];
     const DECODE: Decode<Self> =
         |data| Self { current_raw: Self::CURRENT.get(data), temperature_raw: Self::TEMPERATURE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::CURRENT.put(message.current_raw, payload)?;
-        Self::TEMPERATURE.put(message.temperature_raw, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.put(self.current_raw, payload)?;
+        Self::TEMPERATURE.put(self.temperature_raw, payload)
+    }
 }
 
 /// Every message that a frame can carry.

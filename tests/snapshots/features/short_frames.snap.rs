@@ -197,7 +197,12 @@ impl KeepAlive {
 impl Layout for KeepAlive {
     const SIGNALS: AnySignals = &[&Self::OUTPUTS];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::OUTPUTS.put(self.outputs, payload)
+    }
 }
 
 /// Signed numbers across byte borders. Section 5.
@@ -234,10 +239,13 @@ impl Drift {
 impl Layout for Drift {
     const SIGNALS: AnySignals = &[&Self::DRIFT, &Self::TURNS];
     const DECODE: Decode<Self> = |data| Self { drift_v: Self::DRIFT.decode(data), turns_rpm: Self::TURNS.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::DRIFT.encode(message.drift_v, payload)?;
-        Self::TURNS.put(message.turns_rpm, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::DRIFT.encode(self.drift_v, payload)?;
+        Self::TURNS.put(self.turns_rpm, payload)
+    }
 }
 
 /// Every message that a frame can carry.

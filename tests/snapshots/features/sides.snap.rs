@@ -151,7 +151,12 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Load: `number` 0x002. Section 3.
@@ -183,7 +188,12 @@ impl Load {
 impl Layout for Load {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power_w, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::POWER.put(self.power_w, payload)
+    }
 }
 
 /// Every message that a frame can carry.

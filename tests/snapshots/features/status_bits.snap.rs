@@ -278,10 +278,13 @@ impl Failures {
 impl Layout for Failures {
     const SIGNALS: AnySignals = &[&Self::FAILURE, &Self::MAKER];
     const DECODE: Decode<Self> = |data| Self { failure: Self::FAILURE.get(data), maker: Self::MAKER.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::FAILURE.put(message.failure, payload)?;
-        Self::MAKER.put(message.maker, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::FAILURE.put(self.failure, payload)?;
+        Self::MAKER.put(self.maker, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -236,11 +236,14 @@ impl Layout for Status {
     const SIGNALS: AnySignals = &[&Self::STATE, &Self::RED, &Self::GREEN];
     const DECODE: Decode<Self> =
         |data| Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::STATE.put(message.state, payload)?;
-        Self::RED.put(message.red, payload)?;
-        Self::GREEN.put(message.green, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::STATE.put(self.state, payload)?;
+        Self::RED.put(self.red, payload)?;
+        Self::GREEN.put(self.green, payload)
+    }
 }
 
 /// Every message that a frame can carry.

@@ -172,7 +172,12 @@ impl Version {
 impl Layout for Version {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.put(self.value, payload)
+    }
 }
 
 /// Label of the housing: `command` 0x06. Section 2.
@@ -209,10 +214,13 @@ impl Label {
 impl Layout for Label {
     const SIGNALS: AnySignals = &[&Self::FAMILY, &Self::CODE];
     const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data), code: Self::CODE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::FAMILY.put(message.family, payload)?;
-        Self::CODE.put(message.code, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::FAMILY.put(self.family, payload)?;
+        Self::CODE.put(self.code, payload)
+    }
 }
 
 /// Every message that a frame can carry.

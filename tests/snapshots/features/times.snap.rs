@@ -189,7 +189,12 @@ impl Temperature {
 impl Layout for Temperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VALUE.encode(self.value_c, payload)
+    }
 }
 
 /// Alive: `command` 0x02. Section 3.

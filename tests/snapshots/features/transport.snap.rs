@@ -349,12 +349,15 @@ impl Layout for TpRequestToSend {
         most: Self::MOST.get(data),
         group: Self::GROUP.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::MOST.put(message.most, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::MOST.put(self.most, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Permission to send some packets: `format` 0xEC, `control` 0x11. Section 2.
@@ -405,11 +408,14 @@ impl Layout for TpClearToSend {
     const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::NEXT.put(message.next, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::NEXT.put(self.next, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Receipt of all packets: `format` 0xEC, `control` 0x13. Section 2.
@@ -458,11 +464,14 @@ impl Layout for TpEndOfMessage {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Announcement of a long message to all nodes: `format` 0xEC, `control` 0x20. Section 2.
@@ -511,11 +520,14 @@ impl Layout for TpBroadcast {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// End of a transfer before its time: `format` 0xEC, `control` 0xFF. Section 2.
@@ -559,10 +571,13 @@ impl TpAbort {
 impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::REASON.put(message.reason, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::REASON.put(self.reason, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Packet of a long message: `format` 0xEB. Section 2.
@@ -602,10 +617,13 @@ impl TpData {
 impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::NUMBER.put(message.number, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::NUMBER.put(self.number, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 /// Tp. Section 2.

@@ -272,26 +272,6 @@ impl Layout for CellsFrame {
         &Self::GROUP_4,
     ];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(2);
-        if message.voltage_v[1].is_some() || message.group[1].is_some() {
-            payload.end_after(4);
-        }
-        if message.voltage_v[2].is_some() || message.group[2].is_some() {
-            payload.end_after(6);
-        }
-        if message.voltage_v[3].is_some() || message.group[3].is_some() {
-            payload.end_after(8);
-        }
-        Self::VOLTAGE_1.encode_some(message.voltage_v[0], payload)?;
-        Self::VOLTAGE_2.encode_some(message.voltage_v[1], payload)?;
-        Self::VOLTAGE_3.encode_some(message.voltage_v[2], payload)?;
-        Self::VOLTAGE_4.encode_some(message.voltage_v[3], payload)?;
-        Self::GROUP_1.put_some(message.group[0], payload)?;
-        Self::GROUP_2.put_some(message.group[1], payload)?;
-        Self::GROUP_3.put_some(message.group[2], payload)?;
-        Self::GROUP_4.put_some(message.group[3], payload)
-    };
     const LENGTHS: &'static [u8] = &[2, 4, 6, 8];
 
     #[inline]
@@ -310,6 +290,29 @@ impl Layout for CellsFrame {
                 Self::GROUP_4.get_some(data, length),
             ],
         }
+    }
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        payload.end_after(2);
+        if self.voltage_v[1].is_some() || self.group[1].is_some() {
+            payload.end_after(4);
+        }
+        if self.voltage_v[2].is_some() || self.group[2].is_some() {
+            payload.end_after(6);
+        }
+        if self.voltage_v[3].is_some() || self.group[3].is_some() {
+            payload.end_after(8);
+        }
+        Self::VOLTAGE_1.encode_some(self.voltage_v[0], payload)?;
+        Self::VOLTAGE_2.encode_some(self.voltage_v[1], payload)?;
+        Self::VOLTAGE_3.encode_some(self.voltage_v[2], payload)?;
+        Self::VOLTAGE_4.encode_some(self.voltage_v[3], payload)?;
+        Self::GROUP_1.put_some(self.group[0], payload)?;
+        Self::GROUP_2.put_some(self.group[1], payload)?;
+        Self::GROUP_3.put_some(self.group[2], payload)?;
+        Self::GROUP_4.put_some(self.group[3], payload)
     }
 }
 
@@ -365,12 +368,15 @@ impl Layout for TpRequestToSend {
         most: Self::MOST.get(data),
         group: Self::GROUP.get(data),
     };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::MOST.put(message.most, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::MOST.put(self.most, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Permission to send some packets: `format` 0xEC, `control` 0x11. Section 2.
@@ -421,11 +427,14 @@ impl Layout for TpClearToSend {
     const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::NEXT.put(message.next, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::NEXT.put(self.next, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Receipt of all packets: `format` 0xEC, `control` 0x13. Section 2.
@@ -474,11 +483,14 @@ impl Layout for TpEndOfMessage {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Announcement of a long message to all nodes: `format` 0xEC, `control` 0x20. Section 2.
@@ -527,11 +539,14 @@ impl Layout for TpBroadcast {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::SIZE.put(message.size, payload)?;
-        Self::PACKETS.put(message.packets, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::SIZE.put(self.size, payload)?;
+        Self::PACKETS.put(self.packets, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// End of a transfer before its time: `format` 0xEC, `control` 0xFF. Section 2.
@@ -575,10 +590,13 @@ impl TpAbort {
 impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::REASON.put(message.reason, payload)?;
-        Self::GROUP.put(message.group, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::REASON.put(self.reason, payload)?;
+        Self::GROUP.put(self.group, payload)
+    }
 }
 
 /// Packet of a long message: `format` 0xEB. Section 2.
@@ -618,10 +636,13 @@ impl TpData {
 impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::NUMBER.put(message.number, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::NUMBER.put(self.number, payload)?;
+        Self::DATA.put(self.data, payload)
+    }
 }
 
 /// Tp. Section 2.

@@ -266,10 +266,13 @@ impl Within<SetMode> {
 impl Layout for SetMode {
     const SIGNALS: AnySignals = &[&Self::MODE, &Self::DELAY];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data), delay_s: Self::DELAY.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::MODE.put(message.mode, payload)?;
-        Self::DELAY.put(message.delay_s, payload)
-    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::MODE.put(self.mode, payload)?;
+        Self::DELAY.put(self.delay_s, payload)
+    }
 }
 
 /// Every message that a frame can carry.

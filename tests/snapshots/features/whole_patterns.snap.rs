@@ -150,7 +150,12 @@ impl Wanted {
 impl Layout for Wanted {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.put(message.current_a, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::CURRENT.put(self.current_a, payload)
+    }
 }
 
 /// Limits: `id` 0x351. Section 3.
@@ -174,7 +179,12 @@ impl Limits {
 impl Layout for Limits {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.encode(self.voltage_v, payload)
+    }
 }
 
 /// Cycles. Section 4.
@@ -207,7 +217,12 @@ impl Cycles {
 impl Layout for Cycles {
     const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::COUNT.put(self.count, payload)
+    }
 }
 
 /// Every message that a frame can carry.

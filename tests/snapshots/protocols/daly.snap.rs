@@ -871,6 +871,7 @@ impl Layout for PackValues {
         state_of_charge_percent: Self::STATE_OF_CHARGE.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CUMULATIVE_VOLTAGE.encode(self.cumulative_voltage_v, payload)?;
@@ -943,6 +944,7 @@ impl Layout for CellVoltageExtremes {
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
@@ -1021,6 +1023,7 @@ impl Layout for TemperatureExtremes {
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MAXIMUM_TEMPERATURE.encode(self.maximum_temperature_c, payload)?;
@@ -1101,6 +1104,7 @@ impl Layout for ChargeState {
         remaining_capacity_ah: Self::REMAINING_CAPACITY.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::STATE.put(self.state, payload)?;
@@ -1168,6 +1172,7 @@ impl Layout for StatusInformation {
         inputs_outputs: Self::INPUTS_OUTPUTS.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CELL_COUNT.put(self.cell_count, payload)?;
@@ -1238,6 +1243,7 @@ impl Layout for CellVoltages {
         voltage_v: [Self::VOLTAGE_1.decode(data), Self::VOLTAGE_2.decode(data), Self::VOLTAGE_3.decode(data)],
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PART.put(self.part, payload)?;
@@ -1337,6 +1343,7 @@ impl Layout for Temperatures {
         ],
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PART.put(self.part, payload)?;
@@ -1381,6 +1388,7 @@ impl Layout for BalanceState {
     const SIGNALS: AnySignals = &[&Self::BALANCE];
     const DECODE: Decode<Self> = |data| Self { balance: Self::BALANCE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::BALANCE.put(self.balance, payload)
@@ -1426,6 +1434,7 @@ impl Layout for FailureStatus {
     const DECODE: Decode<Self> =
         |data| Self { failures: Self::FAILURES.get(data), fault_code: Self::FAULT_CODE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::FAILURES.put(self.failures, payload)?;

@@ -1726,6 +1726,7 @@ impl Layout for Chm {
     const DECODE: Decode<Self> =
         |data| Self { version_minor: Self::VERSION_MINOR.get(data), version_major: Self::VERSION_MAJOR.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VERSION_MINOR.put(self.version_minor, payload)?;
@@ -1762,6 +1763,7 @@ impl Layout for Bhm {
     const SIGNALS: AnySignals = &[&Self::MAXIMUM_VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)
@@ -1824,6 +1826,7 @@ impl Layout for Crm {
         area_code: Self::AREA_CODE.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::RESULT.put(self.result, payload)?;
@@ -2292,6 +2295,7 @@ impl Layout for Cts {
         year: Self::YEAR.get_some(data, 8),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SECOND.put_some(self.second, payload)?;
@@ -2388,6 +2392,7 @@ impl Layout for Cml {
         minimum_current_a: Self::MINIMUM_CURRENT.decode_some(data, 8),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)?;
@@ -2422,6 +2427,7 @@ impl Layout for Bro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::READINESS.put(self.readiness, payload)
@@ -2461,6 +2467,7 @@ impl Layout for Cro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::READINESS.put(self.readiness, payload)
@@ -2518,6 +2525,7 @@ impl Layout for Bcl {
         mode: Self::MODE.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
@@ -2736,6 +2744,7 @@ impl Layout for Ccs {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(7);
@@ -2900,6 +2909,7 @@ impl Layout for Bsm {
         permission: Self::PERMISSION.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::HIGHEST_CELL.encode(self.highest_cell, payload)?;
@@ -3062,6 +3072,7 @@ impl Layout for BmvFrame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(2);
@@ -3235,6 +3246,7 @@ impl Layout for BmtFrame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(1);
@@ -3370,6 +3382,7 @@ impl Layout for BspFrame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(1);
@@ -3555,6 +3568,7 @@ impl Layout for Bst {
         voltage: Self::VOLTAGE.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::TARGET_SOC.put(self.target_soc, payload)?;
@@ -3719,6 +3733,7 @@ impl Layout for Cst {
         voltage: Self::VOLTAGE.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CONDITION_REACHED.put(self.condition_reached, payload)?;
@@ -3823,6 +3838,7 @@ impl Layout for Bsd {
         highest_temperature_c: Self::HIGHEST_TEMPERATURE.decode_some(data, 8),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::STATE_OF_CHARGE.put_some(self.state_of_charge_percent, payload)?;
@@ -3894,6 +3910,7 @@ impl Layout for Csd {
         charger_number: Self::CHARGER_NUMBER.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
@@ -3989,6 +4006,7 @@ impl Layout for Bem {
         csd: Self::CSD.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CRM_NOT_RECOGNISED.put(self.crm_not_recognised, payload)?;
@@ -4085,6 +4103,7 @@ impl Layout for Cem {
         bsd: Self::BSD.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::BRM.put(self.brm, payload)?;
@@ -4292,6 +4311,7 @@ impl Layout for Dm1Frame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(4);
@@ -4511,6 +4531,7 @@ impl Layout for Dm2Frame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(4);
@@ -4570,6 +4591,7 @@ impl Layout for Dm3 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -4746,6 +4768,7 @@ impl Layout for Dm6Frame {
         }
     }
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         payload.end_after(1);
@@ -4814,6 +4837,7 @@ impl Layout for Rqst {
     const SIGNALS: AnySignals = &[&Self::PGN];
     const DECODE: Decode<Self> = |data| Self { pgn: Self::PGN.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PGN.put(self.pgn, payload)
@@ -4869,6 +4893,7 @@ impl Layout for Ackm {
         pgn: Self::PGN.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CONTROL.put(self.control, payload)?;
@@ -4930,6 +4955,7 @@ impl Layout for TpRequestToSend {
         group: Self::GROUP.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SIZE.put(self.size, payload)?;
@@ -4989,6 +5015,7 @@ impl Layout for TpClearToSend {
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PACKETS.put(self.packets, payload)?;
@@ -5044,6 +5071,7 @@ impl Layout for TpEndOfMessage {
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SIZE.put(self.size, payload)?;
@@ -5103,6 +5131,7 @@ impl Layout for TpBroadcast {
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SIZE.put(self.size, payload)?;
@@ -5154,6 +5183,7 @@ impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::REASON.put(self.reason, payload)?;
@@ -5199,6 +5229,7 @@ impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::NUMBER.put(self.number, payload)?;

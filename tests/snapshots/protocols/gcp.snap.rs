@@ -1063,6 +1063,7 @@ impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1104,6 +1105,7 @@ impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::COUNT.put(self.count, payload)
@@ -1149,6 +1151,7 @@ impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1219,6 +1222,7 @@ impl Layout for ModuleStatus {
         status_0: Self::STATUS_0.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::GROUP.put(self.group, payload)?;
@@ -1287,6 +1291,7 @@ impl Layout for InputVoltage {
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::AB.encode(self.ab_v, payload)?;
@@ -1356,6 +1361,7 @@ impl Layout for InputVoltageDc {
         minus_pe_v: Self::MINUS_PE.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::PLUS_MINUS.encode(self.plus_minus_v, payload)?;
@@ -1411,6 +1417,7 @@ impl Layout for ExternalVoltage {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1474,6 +1481,7 @@ impl Layout for LimitInputCurrent {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::CURRENT.put(self.current_a, payload)
@@ -1559,6 +1567,7 @@ impl Layout for SetOperatingMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MODE.put(self.mode, payload)
@@ -1634,6 +1643,7 @@ impl Layout for SetWalkIn {
     const DECODE: Decode<Self> =
         |data| Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::WALK_IN.put(self.walk_in, payload)?;
@@ -1657,6 +1667,7 @@ impl Layout for SetWalkInReply {
     const SIGNALS: AnySignals = &[&SetWalkIn::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         SetWalkIn::WALK_IN.put(self.walk_in, payload)
@@ -1709,6 +1720,7 @@ impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::LED.put(self.led, payload)
@@ -1754,6 +1766,7 @@ impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::POWER.put(self.power, payload)
@@ -1804,6 +1817,7 @@ impl Layout for SetTotalOutput {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1854,6 +1868,7 @@ impl Layout for SetModuleOutput {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;

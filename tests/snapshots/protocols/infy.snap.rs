@@ -1169,6 +1169,7 @@ impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1207,6 +1208,7 @@ impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::COUNT.put(self.count, payload)
@@ -1250,6 +1252,7 @@ impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1315,6 +1318,7 @@ impl Layout for ModuleStatus {
         status_0: Self::STATUS_0.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::GROUP.put(self.group, payload)?;
@@ -1367,6 +1371,7 @@ impl Layout for InputVoltage {
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::AB.encode(self.ab_v, payload)?;
@@ -1412,6 +1417,7 @@ impl Layout for SystemOutputFixed {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1457,6 +1463,7 @@ impl Layout for ModuleOutputFixed {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1517,6 +1524,7 @@ impl Layout for ModuleLimits {
         rated_power_w: Self::RATED_POWER.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MAXIMUM_VOLTAGE.put(self.maximum_voltage_v, payload)?;
@@ -1563,6 +1571,7 @@ impl Layout for Barcode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1619,6 +1628,7 @@ impl Layout for ExternalVoltage {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1660,6 +1670,7 @@ impl Layout for SetWalkIn {
     const SIGNALS: AnySignals = &[&Self::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::WALK_IN.put(self.walk_in, payload)
@@ -1698,6 +1709,7 @@ impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::LED.put(self.led, payload)
@@ -1743,6 +1755,7 @@ impl Layout for SetGroup {
     const SIGNALS: AnySignals = &[&Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::GROUP.put(self.group, payload)
@@ -1783,6 +1796,7 @@ impl Layout for SetSleep {
     const SIGNALS: AnySignals = &[&Self::SLEEP];
     const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::SLEEP.put(self.sleep, payload)
@@ -1832,6 +1846,7 @@ impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::POWER.put(self.power, payload)
@@ -1907,6 +1922,7 @@ impl Layout for SetTotalOutput {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1987,6 +2003,7 @@ impl Layout for SetModuleOutput {
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -2035,6 +2052,7 @@ impl Layout for SetAddressMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MODE.put(self.mode, payload)

@@ -895,6 +895,7 @@ impl Layout for MeasurementA {
         counter: Self::COUNTER.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -947,6 +948,7 @@ impl Layout for MeasurementB {
         load_percent: Self::LOAD.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::INPUT.put(self.input, payload)?;
@@ -1011,6 +1013,7 @@ impl Layout for VoltageSetPoint {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1070,6 +1073,7 @@ impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1128,6 +1132,7 @@ impl Layout for OutputSwitch {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1189,6 +1194,7 @@ impl Layout for MinimumFanSpeed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value_percent, payload)
@@ -1230,6 +1236,7 @@ impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1271,6 +1278,7 @@ impl Layout for OutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1321,6 +1329,7 @@ impl Layout for HeatSinkTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_c, payload)
@@ -1362,6 +1371,7 @@ impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value_hz, payload)
@@ -1403,6 +1413,7 @@ impl Layout for OperatingTime {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.encode(self.value_h, payload)
@@ -1444,6 +1455,7 @@ impl Layout for SerialNumber {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1485,6 +1497,7 @@ impl Layout for Firmware {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1526,6 +1539,7 @@ impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1553,6 +1567,7 @@ impl Layout for Refusal {
     const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value, payload)
@@ -1590,6 +1605,7 @@ impl Layout for KeepAlive {
     const SIGNALS: AnySignals = &[&Self::OUTPUTS];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::OUTPUTS.put(self.outputs, payload)

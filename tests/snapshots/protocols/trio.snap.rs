@@ -630,6 +630,7 @@ impl Layout for ReferenceValues {
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MODE.put(self.mode, payload)?;
@@ -684,6 +685,7 @@ impl Layout for OutputValues {
         status: Self::STATUS.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -735,6 +737,7 @@ impl Layout for TemperatureValues {
         fan_2_rpm: Self::FAN_2.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::TEMPERATURE.put(self.temperature_c, payload)?;
@@ -769,6 +772,7 @@ impl Layout for FirmwareVersion {
     const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VERSION.put(self.version, payload)
@@ -804,6 +808,7 @@ impl Layout for RunningTime {
     const SIGNALS: AnySignals = &[&Self::RUNNING, &Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::RUNNING.put(self.running_min, payload)?;
@@ -839,6 +844,7 @@ impl Layout for ReplacementAdvice {
     const SIGNALS: AnySignals = &[&Self::ADVICE];
     const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::ADVICE.put(self.advice, payload)
@@ -931,6 +937,7 @@ impl Layout for Control {
         voltage_v: Self::VOLTAGE.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::MODE.put(self.mode, payload)?;
@@ -977,6 +984,7 @@ impl Layout for SetAddress {
     const SIGNALS: AnySignals = &[&Self::ADDRESS];
     const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::ADDRESS.put(self.address, payload)

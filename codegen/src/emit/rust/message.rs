@@ -161,6 +161,7 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
             const SIGNALS: AnySignals = &[#(&#owner::#constants),*];
             const DECODE: Decode<Self> = |data| #decode;
             #sized
+            #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
             #[inline(always)]
             fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> { #end #(#others?;)* #last }
         }

@@ -230,6 +230,7 @@ impl Layout for SetOutput {
         power_w: Self::POWER.decode(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;

@@ -285,6 +285,7 @@ impl Layout for Status {
     const DECODE: Decode<Self> =
         |data| Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::STATE.put(self.state, payload)?;

@@ -222,6 +222,7 @@ impl Layout for SetOutput {
         power_raw: Self::POWER.get(data),
     };
 
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VOLTAGE.put(self.voltage_raw, payload)?;
