@@ -92,8 +92,9 @@ impl Rational {
     /// Returns the nearest `f64`.
     #[allow(clippy::cast_precision_loss, reason = "the conversion rounds to nearest, which is what is wanted")]
     pub fn to_f64(self) -> f64 {
-        if self.numerator.abs() < 1 << 53 && self.denominator < 1 << 53 {
-            return self.numerator as f64 / self.denominator as f64;
+        let small = |number: i128| i64::try_from(number).ok().filter(|number| number.unsigned_abs() < 1 << 53);
+        if let (Some(numerator), Some(denominator)) = (small(self.numerator), small(self.denominator)) {
+            return numerator as f64 / denominator as f64;
         }
         self.to_string().parse().unwrap_or(self.numerator as f64 / self.denominator as f64)
     }
@@ -156,6 +157,9 @@ impl PartialOrd for Rational {
 
 impl Ord for Rational {
     fn cmp(&self, other: &Self) -> Ordering {
+        if self.denominator == other.denominator {
+            return self.numerator.cmp(&other.numerator);
+        }
         let exact = |one: &Self, another: &Self| one.numerator.checked_mul(another.denominator);
         match (exact(self, other), exact(other, self)) {
             (Some(left), Some(right)) => left.cmp(&right),

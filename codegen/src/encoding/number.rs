@@ -68,7 +68,7 @@ impl Room for Number<'_> {
 
 impl Number<'_> {
     fn is_unscaled(&self) -> bool {
-        self.signal.encoding.is_unscaled()
+        self.scale == Rational::ONE && self.offset == Rational::ZERO
     }
 
     fn special(&self, raw: i128) -> Option<&NamedValue> {

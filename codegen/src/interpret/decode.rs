@@ -262,6 +262,9 @@ impl<'a> Decoder<'a> {
 
     /// Returns the values of payload selectors whose bytes the frame has.
     fn selectors(&self, ids: &[SelectorId]) -> Vec<(SelectorId, u64)> {
+        if ids.is_empty() {
+            return Vec::new();
+        }
         let values = ids.iter().filter_map(|id| match self.protocol[*id].place {
             SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
                 Some((*id, place.get(&self.data)))
@@ -348,11 +351,13 @@ impl<'a> Decoder<'a> {
             let bits = signal.place.get(&self.data);
             Reading::of(self.protocol, (id, signal.on(self.model)), bits)
         });
-        let signals: Vec<_> = readings.collect();
+        let mut signals = Vec::with_capacity(frame.signals.len());
+        signals.extend(readings);
         let selectors = self.selectors(&frame.selectors);
         let reserved = self.reserved(frame);
-        let mut notes = self.error_notes(frame, &selectors);
-        notes.extend(self.address_notes(message, frame, &addressing));
+        let mut notes = Vec::new();
+        self.error_notes(&mut notes, frame, &selectors);
+        self.address_notes(&mut notes, message, frame, &addressing);
         let note = |reading: &Reading| signal_note(self.protocol, message, self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));

@@ -61,34 +61,35 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    pub fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {
+    pub fn error_notes(&self, notes: &mut Vec<Note>, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) {
         let fields = self.protocol.identifier.fields.iter().filter_map(|field| {
-            let value = u64::from(field.get(self.frame.id));
-            Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
+            let normal = u64::from(field.normal?);
+            Some((&field.name, field.get(self.frame.id).into(), normal, field.enumeration))
         });
         let payload = selectors.iter().filter(|_| !frame.is_to_module()).filter_map(|(id, value)| {
             let selector = &self.protocol[*id];
-            let normal = selector.normal.filter(|normal| normal != value)?;
-            Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))
+            Some((&selector.name, *value, selector.normal?, selector.enumeration))
         });
-        let wrong = fields.chain(payload);
-        wrong
-            .map(|(name, value, _, enumeration)| {
-                let named = enumeration.and_then(|id| self.protocol[id].named(value));
-                let text = match named {
-                    Some(meaning) => format!("{name} {value}: {}", meaning.name),
-                    None => format!("{name} {value}, which the document does not name"),
-                };
-                Note { rule: NoteRule::ErrorCode, text }
-            })
-            .collect()
+        for (name, value, _, enumeration) in fields.chain(payload).filter(|(_, value, normal, _)| value != normal) {
+            let named = enumeration.and_then(|id| self.protocol[id].named(value));
+            let text = match named {
+                Some(meaning) => format!("{name} {value}: {}", meaning.name),
+                None => format!("{name} {value}, which the document does not name"),
+            };
+            notes.push(Note { rule: NoteRule::ErrorCode, text });
+        }
     }
 
-    pub fn address_notes(&self, message: &Message, frame: &FrameLayout, addressing: &Addressing) -> Vec<Note> {
-        let mut notes = Vec::new();
+    pub fn address_notes(
+        &self,
+        notes: &mut Vec<Note>,
+        message: &Message,
+        frame: &FrameLayout,
+        addressing: &Addressing,
+    ) {
         let Some((travel, pattern)) = addressing.travel else {
             let text = format!("no addressing mode of this protocol fits a {}", frame.kind.name());
-            return vec![Note { rule: NoteRule::Addressing, text }];
+            return notes.push(Note { rule: NoteRule::Addressing, text });
         };
         if addressing.fit >= Fit::DocumentedElsewhere {
             let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
@@ -109,7 +110,6 @@ impl<'a> Decoder<'a> {
                 notes.push(Note { rule: NoteRule::Address, text });
             }
         }
-        notes
     }
 }
 

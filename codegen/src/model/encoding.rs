@@ -86,6 +86,7 @@ impl Linear {
 impl Encoding {
     /// Returns the scale and the offset of numbers that have them. A number that depends on the device
     /// model counts its raw steps.
+    #[inline]
     pub fn linear(&self) -> Option<Linear> {
         match *self {
             Self::Number { numeral, scale, offset } => Some(Linear { numeral, scale, offset }),
@@ -152,6 +153,7 @@ impl Encoding {
     }
 
     /// Returns the signal on each device model that says what a step is, if that depends on the model.
+    #[inline]
     pub fn by_model(&self) -> &[OfModel<Signal>] {
         match self {
             Self::ByModel { signals, .. } => signals,
@@ -185,8 +187,12 @@ impl Encoding {
     }
 
     /// Returns which integer the bits are, whatever the integer means.
+    #[inline]
     pub fn numeral(&self) -> Numeral {
-        self.linear().map_or(Numeral::Unsigned, |linear| linear.numeral)
+        match self {
+            Self::Number { numeral, .. } | Self::ByModel { numeral, .. } => *numeral,
+            Self::Float | Self::Named(_) | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => Numeral::Unsigned,
+        }
     }
 
     /// Tests whether the physical value is the integer that the bits are.

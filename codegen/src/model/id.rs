@@ -83,6 +83,7 @@ macro_rules! impl_index {
         impl Index<$id> for $owner {
             type Output = $row;
 
+            #[inline]
             fn index(&self, id: $id) -> &$row {
                 &self.$($table).+[id]
             }

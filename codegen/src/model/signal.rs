@@ -210,6 +210,7 @@ impl Signal {
     }
 
     /// Returns the signal as a device model has it, if its scale depends on the model.
+    #[inline]
     pub fn on(&self, model: Option<ModelId>) -> &Self {
         let own = self.encoding.by_model().iter().find(|own| Some(own.model) == model);
         own.map_or(self, |own| &own.value)
@@ -335,6 +336,7 @@ impl Signal {
     }
 
     /// Returns the raw value of bits, sign-extended if the signal is signed.
+    #[inline]
     pub fn raw_of(&self, bits: u64) -> i128 {
         let width = self.place.width();
         let is_negative = self.encoding.numeral().is_signed() && bits >> (width - 1) & 1 == 1;
