@@ -3,11 +3,36 @@
 use canspec_codegen::interpret::{Form, Frame};
 
 use super::Entry;
-use super::part::{CLASSIC, FLEXIBLE, bytes, channel, fewer, identifier, is_hexadecimal, quoted, stamp};
+use super::part::{
+    CLASSIC, FLEXIBLE, LARGEST_EXTENDED, LONGEST_NAME, bytes, channel, even_bytes, fewer, hexadecimal, identifier,
+    is_hexadecimal, is_usual_stamp, quoted, stamp,
+};
 
 /// Tests for a stamp as candump writes it.
 pub fn has_stamp(line: &str) -> bool {
     line.trim_ascii_start().starts_with('(')
+}
+
+/// Reads a line exactly as candump writes a data frame with 29 bits; `None` from any other line.
+pub fn usual(line: &str) -> Option<Entry<'_>> {
+    let (time, rest) = split(line.strip_prefix('(')?, b')')?;
+    let (channel, frame) = split(rest.strip_prefix(' ')?, b' ')?;
+    let (id, data) = frame.split_at_checked(8)?;
+    let is_name = !channel.is_empty() && channel.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    let is_short = time.len().max(channel.len()) <= LONGEST_NAME;
+    if !is_name || !is_short || !is_usual_stamp(time) {
+        return None;
+    }
+    let id = hexadecimal(id).filter(|id| *id <= LARGEST_EXTENDED)?;
+    let data = data.strip_prefix('#').filter(|data| data.len() <= 2 * CLASSIC)?;
+    let frame = Frame { id, extended: true, data: even_bytes(data)?, form: Form::Data };
+    Some(Entry { time: Some(time.into()), channel: Some(channel), frame, digit: 0 })
+}
+
+/// Splits a short word off a text, as `split_once` does, which costs more.
+fn split(text: &str, separator: u8) -> Option<(&str, &str)> {
+    let end = text.bytes().position(|byte| byte == separator)?;
+    Some((&text[..end], &text[end + 1..]))
 }
 
 /// Reads a line that is not blank.

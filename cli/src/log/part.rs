@@ -14,7 +14,7 @@ pub const LARGEST_STANDARD: u32 = 0x7FF;
 pub const CLASSIC: usize = 8;
 pub const FLEXIBLE: usize = 64;
 /// Characters of the name of an interface, which has 15 on Linux, and of a stamp.
-const LONGEST_NAME: usize = 64;
+pub const LONGEST_NAME: usize = 64;
 
 /// The seconds of a line: the text of a number of JSON.
 pub type Stamp<'a> = Cow<'a, str>;
@@ -133,6 +133,13 @@ fn is_decimal(text: &[u8]) -> bool {
     }
 }
 
+/// Tests for seconds that JSON has as they are: digits with a point between them, and no zero before them.
+pub fn is_usual_stamp(text: &str) -> bool {
+    let others = text.bytes().filter(|byte| !byte.is_ascii_digit()).count();
+    let point = text.bytes().position(|byte| byte == b'.');
+    others == 1 && point.is_some_and(|point| point > 0 && point + 1 < text.len()) && !text.starts_with('0')
+}
+
 /// Tests whether JSON is a number.
 pub fn is_number(value: &RawValue) -> bool {
     value.get().starts_with(|first: char| first == '-' || first.is_ascii_digit())
@@ -229,7 +236,7 @@ const VALUES: [u8; 256] = {
 };
 
 /// Reads a number of 32 bits in hexadecimal digits.
-fn hexadecimal(digits: &str) -> Option<u32> {
+pub fn hexadecimal(digits: &str) -> Option<u32> {
     let number = digits.bytes().try_fold(0, |number, digit| {
         let value = VALUES[usize::from(digit)];
         (value < 16 && number >> 28 == 0).then(|| number << 4 | u32::from(value))
@@ -239,6 +246,15 @@ fn hexadecimal(digits: &str) -> Option<u32> {
 
 /// Reads data in hexadecimal digits without anything between them.
 pub fn bytes(digits: &str, most: usize) -> Result<Vec<u8>, String> {
+    match even_bytes(digits) {
+        Some(bytes) => fewer(bytes.len(), most).map(|()| bytes),
+        None if is_hexadecimal(digits) => Err(format!("the data have an odd number of digits, {}", digits.len())),
+        None => Err(format!("the data {} are not hexadecimal", quoted(digits))),
+    }
+}
+
+/// Reads data of any length; `None` from what is not hexadecimal or has half a byte.
+pub fn even_bytes(digits: &str) -> Option<Vec<u8>> {
     let (pairs, odd) = digits.as_bytes().as_chunks();
     let mut seen = 0;
     let byte = |[high, low]: &[u8; 2]| {
@@ -246,14 +262,8 @@ pub fn bytes(digits: &str, most: usize) -> Result<Vec<u8>, String> {
         seen |= high | low;
         high << 4 | low & 0x0F
     };
-    let bytes: Vec<u8> = pairs.iter().map(byte).collect();
-    if seen > 0x0F || !odd.iter().all(u8::is_ascii_hexdigit) {
-        return Err(format!("the data {} are not hexadecimal", quoted(digits)));
-    }
-    if !odd.is_empty() {
-        return Err(format!("the data have an odd number of digits, {}", digits.len()));
-    }
-    fewer(bytes.len(), most).map(|()| bytes)
+    let bytes = pairs.iter().map(byte).collect();
+    (odd.is_empty() && seen <= 0x0F).then_some(bytes)
 }
 
 /// Refuses data that no frame has room for.
