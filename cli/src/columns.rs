@@ -21,14 +21,12 @@ const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST + GAP.len()]) {
 pub struct Columns {
     /// The widths of all columns but the last.
     widths: Vec<usize>,
-    /// The row that is being written.
-    row: String,
 }
 
 impl Columns {
     /// Makes columns as wide as their headings.
     pub fn new(headings: &[&str]) -> Self {
-        let mut columns = Self { widths: vec![0; headings.len()], row: String::new() };
+        let mut columns = Self { widths: vec![0; headings.len()] };
         columns.widen(headings);
         columns
     }
@@ -48,38 +46,15 @@ impl Columns {
         self.widths == other.widths
     }
 
-    /// Returns the width of the last column.
-    pub fn room(&self) -> usize {
-        let left: usize = self.widths.iter().map(|width| width + GAP.len()).sum();
-        WIDTH.saturating_sub(left).max(NARROWEST)
-    }
-
-    /// Writes cells, and beside and below them the lines of the last column.
-    ///
-    /// # Errors
-    ///
-    /// Where `out` cannot be written.
-    pub fn write(&mut self, out: &mut impl Write, cells: &[&str], last: &Lines) -> io::Result<()> {
-        let (mut cells, mut rest) = (cells, last.text.as_str());
-        while let Some(end) = memchr::memchr(b'\n', rest.as_bytes()) {
-            self.line(out, cells, &rest[..end])?;
-            (cells, rest) = (&[], &rest[end + 1..]);
+    /// Begins a row behind a text, with its cells. What is added to it stands in the last column.
+    pub fn row<'a>(&self, text: &'a mut String, cells: &[&str]) -> Lines<'a> {
+        let line = text.len();
+        for (column, cell) in self.widths.iter().zip(cells) {
+            text.push_str(cell);
+            text.push_str(&BLANKS[..column.saturating_sub(width(cell)) + GAP.len()]);
         }
-        self.line(out, cells, rest)
-    }
-
-    fn line(&mut self, out: &mut impl Write, cells: &[&str], last: &str) -> io::Result<()> {
-        let Self { widths, row } = self;
-        row.clear();
-        let blanks = std::iter::repeat("");
-        for (column, cell) in widths.iter().zip(cells.iter().copied().chain(blanks)) {
-            row.push_str(cell);
-            row.push_str(&BLANKS[..column.saturating_sub(width(cell)) + GAP.len()]);
-        }
-        row.push_str(last);
-        row.truncate(row.trim_end().len());
-        row.push('\n');
-        out.write_all(row.as_bytes())
+        let left = self.widths.iter().map(|width| width + GAP.len()).sum();
+        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first: text.len(), width: None, text }
     }
 }
 
@@ -88,53 +63,79 @@ fn width(text: &str) -> usize {
     if text.is_ascii() { text.len() } else { text.chars().count() }
 }
 
-/// Items in lines of the last column.
-#[derive(Clone, Default)]
-pub struct Lines {
-    /// The lines, with a line feed between them.
-    text: String,
-    /// The width of the last line, unless the next item begins a new one.
+/// A row whose last column is filled item by item.
+pub struct Lines<'a> {
+    text: &'a mut String,
+    /// The width of the columns before the last one.
+    left: usize,
+    /// The width of the last column.
+    room: usize,
+    /// Where the last line begins in the text.
+    line: usize,
+    /// Where the last column begins in the text.
+    first: usize,
+    /// The width of the last line in that column, unless the next item begins a new one.
     width: Option<usize>,
 }
 
-impl Lines {
-    /// Takes all lines away.
-    pub fn clear(&mut self) {
-        self.text.clear();
-        self.width = None;
-    }
-
-    /// Adds an item to the last line, or a new line if it would become wider than `room`.
-    pub fn add(&mut self, item: &str, separator: &str, room: usize) {
-        let length = width(item);
-        let joined = self.width.map(|line| line + width(separator) + length);
-        if let Some(joined) = joined.filter(|joined| *joined <= room) {
+impl Lines<'_> {
+    /// Adds an item to the last line, or a new line if it would become wider than the column.
+    pub fn add(&mut self, item: &str, separator: &str) {
+        if let Some(line) = &mut self.width {
+            *line += width(separator);
             self.text.push_str(separator);
-            self.width = Some(joined);
-        } else {
-            if self.width.is_some() {
-                self.text.push_str(separator.trim_end());
-            }
-            if self.width.is_some() || !self.text.is_empty() {
-                self.text.push('\n');
-            }
-            self.width = Some(length);
         }
-        self.text.push_str(item);
+        self.place(self.room, |text| text.push_str(item));
     }
 
     /// Adds the words of a sentence, which begins a line.
-    pub fn add_sentence(&mut self, text: &str, room: usize) {
+    pub fn add_sentence(&mut self, text: &str) {
         self.width = None;
-        text.split(' ').for_each(|word| self.add(word, " ", room));
+        text.split(' ').for_each(|word| self.add(word, " "));
     }
-}
 
-/// Joins items with a separator into lines of at most `room` characters, unless an item alone is longer.
-pub fn wrap<S: AsRef<str>>(items: impl IntoIterator<Item = S>, separator: &str, room: usize) -> Lines {
-    let mut lines = Lines::default();
-    items.into_iter().for_each(|item| lines.add(item.as_ref(), separator, room));
-    lines
+    /// Adds an item that `write` writes and ends with a blank. Only that may stand beyond the column.
+    pub fn add_by(&mut self, write: impl FnOnce(&mut String)) {
+        self.place(self.room + 1, write);
+    }
+
+    fn place(&mut self, room: usize, write: impl FnOnce(&mut String)) {
+        let start = self.text.len();
+        write(self.text);
+        let item = width(&self.text[start..]);
+        match self.width {
+            Some(line) if line + item <= room => self.width = Some(line + item),
+            None if start == self.first => self.width = Some(item),
+            _ => self.begin_line(start, item),
+        }
+    }
+
+    /// Begins a line with the last item.
+    fn begin_line(&mut self, start: usize, width: usize) {
+        let item = self.text.split_off(start);
+        self.end_line();
+        let mut left = self.left;
+        while left > 0 {
+            let count = left.min(BLANKS.len());
+            self.text.push_str(&BLANKS[..count]);
+            left -= count;
+        }
+        self.text.push_str(&item);
+        self.width = Some(width);
+    }
+
+    /// Ends the last line, without the blanks at its end.
+    fn end_line(&mut self) {
+        let length = self.text[self.line..].trim_end().len();
+        self.text.truncate(self.line + length);
+        self.text.push('\n');
+        self.line = self.text.len();
+    }
+
+    /// Ends the row.
+    pub fn end(mut self) {
+        self.end_line();
+    }
 }
 
 /// Writes rows of cells, the last cell of each in lines, under their headings.
@@ -147,9 +148,16 @@ pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) 
     for row in rows {
         columns.widen(&row.cells());
     }
-    columns.write(out, headings, &wrap([last], "", 0))?;
-    let room = columns.room();
-    rows.iter().try_for_each(|row| columns.write(out, &row.cells(), &wrap(&row.last, row.separator, room)))
+    let mut text = String::new();
+    let mut lines = columns.row(&mut text, headings);
+    lines.add(last, "");
+    lines.end();
+    for row in rows {
+        let mut lines = columns.row(&mut text, &row.cells());
+        row.last.iter().for_each(|item| lines.add(item, row.separator));
+        lines.end();
+    }
+    out.write_all(text.as_bytes())
 }
 
 /// A row of a table that is known as a whole.
@@ -203,20 +211,45 @@ mod tests {
         assert_eq!(text, format!("A  NAME  REST\n1  x     {word}\n         {word}\n"));
     }
 
+    /// Fills a last column of some width.
+    fn filled(room: usize, fill: impl FnOnce(&mut Lines)) -> String {
+        let mut text = String::new();
+        let mut lines = Lines { room, ..Columns::new(&[]).row(&mut text, &[]) };
+        fill(&mut lines);
+        lines.end();
+        text
+    }
+
     #[test]
     fn items_share_a_line_as_long_as_they_fit() {
-        assert_eq!(wrap(["aa", "bb", "cc"], ", ", 6).text, "aa, bb,\ncc");
-        assert_eq!(wrap(["°C°C", "m"], "  ", 7).text, "°C°C  m");
-        assert_eq!(wrap(["too long", "m"], " ", 3).text, "too long\nm");
+        let joined = |items: &[&str], separator, room| {
+            filled(room, |lines| items.iter().for_each(|item| lines.add(item, separator)))
+        };
+        assert_eq!(joined(&["aa", "bb", "cc"], ", ", 6), "aa, bb,\ncc\n");
+        assert_eq!(joined(&["°C°C", "m"], "  ", 7), "°C°C  m\n");
+        assert_eq!(joined(&["too long", "m"], " ", 3), "too long\nm\n");
+    }
+
+    #[test]
+    fn only_the_blank_behind_an_item_may_stand_beyond_the_column() {
+        let joined = |room| {
+            filled(room, |lines| {
+                for item in ["aa ", "°° "] {
+                    lines.add_by(|text| text.push_str(item));
+                }
+            })
+        };
+        assert_eq!([joined(5), joined(4)], ["aa °°\n", "aa\n°°\n"]);
     }
 
     #[test]
     fn a_sentence_begins_a_line_of_its_own() {
-        let mut lines = wrap(["a", "b"], " ", 9);
-        lines.add_sentence("c d", 9);
-        assert_eq!(lines.text, "a b\nc d");
-        lines.clear();
-        lines.add_sentence("c d e", 3);
-        assert_eq!(lines.text, "c d\ne");
+        let text = filled(9, |lines| {
+            lines.add("a", " ");
+            lines.add("b", " ");
+            lines.add_sentence("c d");
+        });
+        assert_eq!(text, "a b\nc d\n");
+        assert_eq!(filled(3, |lines| lines.add_sentence("c d e")), "c d\ne\n");
     }
 }

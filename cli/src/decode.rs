@@ -182,10 +182,16 @@ impl Decode {
                 self.line(&devices, state, counts, out, line)
             })?
         } else {
-            input.each(&mut out, |out, line| self.line(&devices, &mut state, &mut counts, out, line))?
+            let mut text = Vec::new();
+            input.each(&mut out, |out, line| {
+                text.clear();
+                self.line(&devices, &mut state, &mut counts, &mut text, line).map(|()| out.write_all(&text))
+            })?
         };
         for (protocol, channel, whole) in state.assemblies.iter_mut().flat_map(|known| known.finish(&devices)) {
-            self.show_whole(&mut state.printer, &mut out, protocol, channel.as_deref(), whole)?;
+            let mut text = Vec::new();
+            self.show_whole(&mut state.printer, &mut text, protocol, channel.as_deref(), whole);
+            out.write_all(&text)?;
         }
         state.printer.end(&mut out)?;
         out.flush()?;
@@ -202,29 +208,28 @@ impl Decode {
         devices: &[Device<'_>],
         state: &mut State,
         counts: &mut Counts,
-        out: &mut impl Write,
+        out: &mut Vec<u8>,
         line: Line<'_>,
-    ) -> Result<io::Result<()>, String> {
+    ) -> Result<(), String> {
         let entry = state.reader.read(line.text?)?;
         let entry = entry.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
-        let Some(entry) = entry else { return Ok(Ok(())) };
+        let Some(entry) = entry else { return Ok(()) };
         let decoded = decode(devices, &entry.frame);
         counts.frames += 1;
         counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
-        let Some((device, decoded)) = decoded else { return Ok(Ok(())) };
+        let Some((device, mut decoded)) = decoded else { return Ok(()) };
         let taken = match (&mut state.assemblies, &decoded) {
             (Some(assemblies), Ok(decoded)) => assemblies.take(device, line.number, &entry, decoded),
             _ => Taken { is_part: false, ended: Vec::new() },
         };
         let is_hidden = taken.is_part && matches!(self.format, Format::Text) && !self.frames;
-        let show = || {
-            if !is_hidden {
-                self.show(&mut state.printer, out, line.number, &entry, (device.0, decoded))?;
-            }
-            let mut ended = taken.ended.into_iter();
-            ended.try_for_each(|whole| self.show_whole(&mut state.printer, out, device.0, entry.channel, whole))
-        };
-        Ok(show())
+        if !is_hidden {
+            self.show(&mut state.printer, out, line.number, &entry, (device.0, &mut decoded));
+        }
+        for whole in taken.ended {
+            self.show_whole(&mut state.printer, out, device.0, entry.channel, whole);
+        }
+        Ok(())
     }
 
     /// Says why nothing is shown: no frame is of a chosen channel, or there is none. A summary counts none itself.
@@ -260,34 +265,34 @@ impl Decode {
     fn show(
         &self,
         printer: &mut Printer,
-        out: &mut impl Write,
+        out: &mut Vec<u8>,
         line: usize,
         entry: &Entry<'_>,
-        (protocol, mut decoded): (&Protocol, Result<Decoded, Unrecognised>),
-    ) -> io::Result<()> {
-        let is_chosen = match &mut decoded {
+        (protocol, decoded): (&Protocol, &mut Result<Decoded, Unrecognised>),
+    ) {
+        let is_chosen = match decoded {
             Ok(decoded) => self.choice.keep(protocol, decoded),
             Err(_) => self.choice.is_everything(),
         };
         if !is_chosen {
-            return Ok(());
+            return;
         }
         let Entry { time, channel, frame, .. } = entry;
-        let (time, channel, decoded) = (time.as_deref(), *channel, &decoded);
-        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: None })
+        let (time, channel) = (time.as_deref(), *channel);
+        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: None });
     }
 
     fn show_whole(
         &self,
         printer: &mut Printer,
-        out: &mut impl Write,
+        out: &mut Vec<u8>,
         protocol: &Protocol,
         channel: Option<&str>,
         assembled: Assembled<Mark>,
-    ) -> io::Result<()> {
+    ) {
         let Assembled { marks, frame, mut decoded, data, reserved, counter, incomplete } = assembled;
         if !self.choice.keep(protocol, &mut decoded) {
-            return Ok(());
+            return;
         }
         let lines: Vec<_> = marks.iter().map(|mark| mark.line).collect();
         let last = marks.last();
@@ -300,7 +305,7 @@ impl Decode {
         };
         let (line, time) = (last.map_or(0, |mark| mark.line), last.and_then(|mark| mark.time.as_deref()));
         let (frame, decoded) = (&frame, &Ok(decoded));
-        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) })
+        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) });
     }
 }
 
@@ -315,15 +320,12 @@ impl Printer {
         }
     }
 
-    fn frame(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+    fn frame(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
         match self {
             Self::Text(table) => table.write(out, outcome),
             Self::Jsonl => line::write(out, outcome),
             Self::Csv(rows) => rows.write(out, outcome),
-            Self::Summary { counts, .. } => {
-                counts.count(outcome);
-                Ok(())
-            }
+            Self::Summary { counts, .. } => counts.count(outcome),
         }
     }
 
@@ -331,7 +333,7 @@ impl Printer {
     fn end(&mut self, out: &mut impl Write) -> io::Result<()> {
         match self {
             Self::Text(_) | Self::Jsonl => Ok(()),
-            Self::Csv(rows) => rows.begin(out),
+            Self::Csv(rows) => out.write_all(rows.begin().as_bytes()),
             Self::Summary { counts, jsonl: true } => counts.write_jsonl(out),
             Self::Summary { counts, jsonl: false } => counts.write_text(out),
         }
@@ -344,17 +346,21 @@ type Answer<'a> = (Device<'a>, Result<Decoded, Unrecognised>);
 /// Decodes by the first protocol that recognises the frame. If none does, it is the one whose tests the frame passes
 /// furthest.
 fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
-    let mut nearest: Option<(u8, Answer<'a>)> = None;
+    let mut nearest: Option<Answer<'a>> = None;
     for &(protocol, model) in devices {
-        match interpret::decode(protocol, model, frame) {
-            Ok(decoded) => return Some(((protocol, model), Ok(decoded))),
-            Err(unrecognised) => {
-                let passed = unrecognised.problem as u8;
-                if nearest.as_ref().is_none_or(|(known, _)| passed > *known) {
-                    nearest = Some((passed, ((protocol, model), Err(unrecognised))));
-                }
-            }
+        let answer = interpret::decode(protocol, model, frame);
+        let is_nearest = nearest.as_ref().is_none_or(|(_, known)| passed(&answer) > passed(known));
+        if answer.is_ok() {
+            return Some(((protocol, model), answer));
+        }
+        if is_nearest {
+            nearest = Some(((protocol, model), answer));
         }
     }
-    nearest.map(|(_, answer)| answer)
+    nearest
+}
+
+/// Returns how many tests a frame passes, which is more if all are passed.
+fn passed(answer: &Result<Decoded, Unrecognised>) -> u8 {
+    answer.as_ref().map_or_else(|unrecognised| unrecognised.problem as u8, |_| u8::MAX)
 }

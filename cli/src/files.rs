@@ -37,8 +37,8 @@ impl Log {
         let outcome = Outcome { line: 1, time, channel, frame, protocol, decoded, whole: None };
         let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
         let unwritten = |error: std::io::Error| error.to_string();
-        line::write(&mut json, &outcome).map_err(unwritten)?;
-        Table::new(std::slice::from_ref(protocol)).write(&mut table, &outcome).map_err(unwritten)?;
+        line::write(&mut json, &outcome);
+        Table::new(std::slice::from_ref(protocol)).write(&mut table, &outcome);
         let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
         Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))

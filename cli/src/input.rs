@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::iter;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ pub const LONGEST: usize = 1 << 16;
 const PART: u64 = 1 << 18;
 
 /// Some editors put it before the first line.
-const BYTE_ORDER_MARK: &[u8] = "\u{FEFF}".as_bytes();
+const BYTE_ORDER_MARK: &str = "\u{FEFF}";
 
 /// What a file has in common with itself alone, whatever path leads to it: its device and number.
 #[cfg(unix)]
@@ -65,16 +66,25 @@ pub struct Line<'a> {
 
 impl<'a> Line<'a> {
     fn new(number: usize, line: &'a [u8]) -> Self {
-        let line = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
+        let line = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK.as_bytes()).unwrap_or(line) } else { line };
         Self { number, text: text(line.strip_suffix(b"\n").unwrap_or(line)) }
+    }
+
+    /// Makes a line of what is known to be UTF-8.
+    fn of_text(number: usize, line: &'a str) -> Self {
+        let line = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
+        let line = line.strip_suffix('\n').unwrap_or(line);
+        Self { number, text: short(line.as_bytes()).map(|()| line) }
     }
 }
 
 fn text(line: &[u8]) -> Result<&str, String> {
-    if line.len() > LONGEST {
-        return Err(format!("the line is longer than {LONGEST} bytes"));
-    }
+    short(line)?;
     str::from_utf8(line).map_err(|error| format!("byte {} of the line is not UTF-8", error.valid_up_to() + 1))
+}
+
+fn short(line: &[u8]) -> Result<(), String> {
+    if line.len() > LONGEST { Err(format!("the line is longer than {LONGEST} bytes")) } else { Ok(()) }
 }
 
 /// Says which line was refused, and why.
@@ -82,13 +92,12 @@ fn complaint(name: &Path, number: usize, why: &str) -> String {
     format!("{}:{number}: {}", shown(name), escaped(why))
 }
 
-/// Returns the lines of a text with their ends.
-fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let mut rest = text;
+/// Returns where the lines of a text stand, with their ends.
+fn lines(text: &[u8]) -> impl Iterator<Item = Range<usize>> {
+    let (mut start, mut ends) = (0, memchr::memchr_iter(b'\n', text));
     iter::from_fn(move || {
-        let end = memchr::memchr(b'\n', rest).map_or(rest.len(), |end| end + 1);
-        let (line, after) = rest.split_at(end);
-        rest = after;
+        let line = start..ends.next().map_or(text.len(), |end| end + 1);
+        start = line.end;
         (!line.is_empty()).then_some(line)
     })
 }
@@ -245,7 +254,9 @@ impl Input {
         let read = read.and_then(|_| if ends_line { Ok(false) } else { self.fill() });
         read.map_err(|error| Failure::input(&self.name, &error))?;
         let part = Part { name: self.name.clone(), number: self.number, bytes: self.line.as_slice().into() };
-        self.number += lines(&self.line).count();
+        // The last line has no end if it is too long.
+        let unended = usize::from(self.line.last().is_some_and(|byte| *byte != b'\n'));
+        self.number += memchr::memchr_iter(b'\n', &self.line).count() + unended;
         Ok(Some(part).filter(|part| part.length() > 0))
     }
 }
@@ -266,12 +277,17 @@ impl Part {
     }
 
     /// Does `work` on each line, and returns what it writes, with the complaints about what it refuses.
-    pub fn work(self, mut work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String>) -> Written {
+    pub fn work(self, mut work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<(), String>) -> Written {
         let mut written = Written::default();
-        for (line, number) in lines(&self.bytes).zip(self.number + 1..) {
-            match work(&mut written.text, Line::new(number, line)) {
-                Ok(done) => debug_assert!(done.is_ok(), "memory is written"),
-                Err(why) => written.complaints.push((written.text.len(), complaint(&self.name, number, &why))),
+        // To test the whole at once costs much less than to test line by line.
+        let text = str::from_utf8(&self.bytes).ok();
+        for (place, number) in lines(&self.bytes).zip(self.number + 1..) {
+            let line = match text {
+                Some(text) => Line::of_text(number, &text[place]),
+                None => Line::new(number, &self.bytes[place]),
+            };
+            if let Err(why) = work(&mut written.text, line) {
+                written.complaints.push((written.text.len(), complaint(&self.name, number, &why)));
             }
         }
         written
@@ -354,7 +370,7 @@ mod tests {
             while let Ok(Some(part)) = input.next_part() {
                 part.work(|_, line| {
                     found.push((line.number, line.text.map(str::to_owned)));
-                    Ok(Ok(()))
+                    Ok(())
                 });
                 parts += 1;
             }
@@ -369,7 +385,10 @@ mod tests {
         let part = input.next_part().expect("memory is read").expect("it has lines");
         let written = part.work(|out, line| match line.text? {
             "bad" => Err("it is bad".to_owned()),
-            text => Ok(out.write_all(text.as_bytes())),
+            text => {
+                out.extend_from_slice(text.as_bytes());
+                Ok(())
+            }
         });
         assert_eq!((written.text, written.complaints), (b"ab".to_vec(), vec![(1, "test:2: it is bad".to_owned())]));
         assert!(input.next_part().is_ok_and(|part| part.is_none()));

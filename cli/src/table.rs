@@ -1,12 +1,10 @@
 //! The table of frames that `decode` writes for people.
 
-use std::io::{self, Write};
-
 use canspec_codegen::interpret::{Decoded, Unrecognised, Value};
 use canspec_codegen::model::{Kind, Mode, Protocol, SelectorId, Side};
 
-use crate::columns::{Columns, Lines, wrap};
-use crate::fields::{Field, Read, fields};
+use crate::columns::{Columns, Lines};
+use crate::fields::{Field, Read, elements, fields};
 use crate::line::{Outcome, addresses};
 use crate::log;
 use crate::value;
@@ -27,6 +25,8 @@ pub struct Table {
     several: bool,
     started: bool,
     row: Row,
+    /// The row, before it is written as a whole.
+    text: String,
 }
 
 /// The texts of a row that are made for it.
@@ -35,8 +35,7 @@ struct Row {
     identifier: Vec<u8>,
     address: String,
     message: String,
-    lines: Lines,
-    /// The signal or note that is added next.
+    /// What may be parted before it is added.
     item: String,
 }
 
@@ -44,7 +43,7 @@ impl Table {
     /// Makes columns that the names of these protocols fit.
     pub fn new(protocols: &[Protocol]) -> Self {
         let (columns, several) = (Columns::new(&HEADINGS), protocols.len() > 1);
-        let mut table = Self { columns, several, started: false, row: Row::default() };
+        let mut table = Self { columns, several, started: false, row: Row::default(), text: String::new() };
         for protocol in protocols {
             table.make_room(protocol);
         }
@@ -75,14 +74,11 @@ impl Table {
     }
 
     /// Writes a frame as a row, with its notes below.
-    ///
-    /// # Errors
-    ///
-    /// Where `out` cannot be written.
-    pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
-        let Self { columns, several, started, row } = self;
+    pub fn write(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+        let Self { columns, several, started, row, text } = self;
+        text.clear();
         row.identifier.clear();
-        log::write_identifier(&mut row.identifier, outcome.frame)?;
+        log::write_identifier(&mut row.identifier, outcome.frame);
         let access = row.name(outcome, several.then_some(outcome.protocol));
         let identifier = str::from_utf8(&row.identifier).unwrap_or_default();
         let time = outcome.time.unwrap_or_default();
@@ -90,12 +86,15 @@ impl Table {
         columns.widen(&cells);
         if !*started {
             columns.widen(&[&grown(time)]);
-            columns.write(out, &HEADINGS, &wrap(["SIGNALS"], "", 0))?;
+            let mut lines = columns.row(text, &HEADINGS);
+            lines.add("SIGNALS", "");
+            lines.end();
             *started = true;
         }
-        row.lines.clear();
-        lines(&mut row.lines, &mut row.item, outcome, columns.room());
-        columns.write(out, &cells, &row.lines)
+        let mut lines = columns.row(text, &cells);
+        signals(&mut lines, &mut row.item, outcome);
+        lines.end();
+        out.extend_from_slice(text.as_bytes());
     }
 }
 
@@ -172,36 +171,42 @@ pub fn others(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     }
 }
 
-/// Adds the lines of the last column. `item` is room to write in.
-fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usize) {
+/// Adds the items of the last column. `item` is room to write in.
+fn signals(lines: &mut Lines<'_>, item: &mut String, outcome: &Outcome<'_>) {
     match outcome.decoded {
-        Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded, room),
+        Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded),
         Ok(decoded) => {
             for (name, value) in open_selectors(outcome.protocol, decoded) {
-                item.clear();
-                item.extend([name, " ", &value, GAP]);
-                lines.add(item, "", room + 1);
+                lines.add_by(|text| text.extend([name, " ", &value, GAP]));
             }
-            for (name, field) in fields(decoded.content(outcome.protocol), decoded) {
-                item.clear();
-                item.extend([name, " "]);
-                let may_be_parted = add_field(item, outcome.protocol, &field);
-                item.push_str(GAP);
-                if may_be_parted {
-                    item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
+            let content = decoded.content(outcome.protocol);
+            for (name, field) in fields(content, decoded) {
+                let add = |text: &mut String| {
+                    text.push_str(name);
+                    text.push(' ');
+                    match field {
+                        Field::Signal(read) => add_signal(text, outcome.protocol, read),
+                        Field::Array(id) => array(text, outcome.protocol, &elements(content, decoded, id)),
+                    }
+                    text.push_str(GAP);
+                };
+                if may_be_parted(&field) {
+                    item.clear();
+                    add(item);
+                    item.split_inclusive(", ").for_each(|piece| lines.add_by(|text| text.push_str(piece)));
                 } else {
-                    lines.add(item, "", room + 1);
+                    lines.add_by(add);
                 }
             }
-            decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
+            decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text));
             if let Some(text) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
-                remark(lines, item, "incomplete", text, room);
+                remark(lines, item, "incomplete", text);
             }
         }
         Err(Unrecognised { problem, text, .. }) => {
             let data = log::hexadecimal(&outcome.frame.data);
             let separated = if data.is_empty() { data } else { data + GAP };
-            lines.add_sentence(&format!("{separated}! {}: {text}", problem.name()), room);
+            lines.add_sentence(&format!("{separated}! {}: {text}", problem.name()));
         }
     }
 }
@@ -220,34 +225,33 @@ fn open_selectors<'a>(protocol: &'a Protocol, decoded: &'a Decoded) -> impl Iter
 }
 
 /// Adds the data of a frame that reports an error in place of its values, and why.
-fn refusal(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, decoded: &Decoded, room: usize) {
+fn refusal(lines: &mut Lines<'_>, item: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     let what = if decoded.kind == Kind::Reply { "refused" } else { "in error" };
     let data = log::hexadecimal(&outcome.frame.data);
     let separator = if data.is_empty() { "" } else { ", data " };
-    lines.add(&format!("{what}{separator}{data}"), "", room);
+    lines.add(&format!("{what}{separator}{data}"), "");
     let notes = decoded.notes.iter().filter(|note| !note.is_about_value());
-    notes.for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
+    notes.for_each(|note| remark(lines, item, note.rule.name(), &note.text));
 }
 
-fn remark(lines: &mut Lines, item: &mut String, rule: &str, text: &str, room: usize) {
+fn remark(lines: &mut Lines<'_>, item: &mut String, rule: &str, text: &str) {
     item.clear();
     item.extend(["! ", rule, ": ", text]);
-    lines.add_sentence(item, room);
+    lines.add_sentence(item);
 }
 
-/// Adds the values of a field, and returns whether they may be long, and parted after a comma.
-fn add_field(text: &mut String, protocol: &Protocol, field: &Field) -> bool {
+/// Tests whether values may be long, so that they are parted after a comma.
+fn may_be_parted(field: &Field) -> bool {
     match field {
-        Field::Signal((signal, reading)) => {
-            value::write(text, protocol, signal, reading);
-            unit(text, (signal, reading));
-            matches!(reading.value, Value::Text(_) | Value::Status { .. })
-        }
-        Field::Array(elements) => {
-            array(text, protocol, elements);
-            true
-        }
+        Field::Signal((_, reading)) => matches!(reading.value, Value::Text(_) | Value::Status { .. }),
+        Field::Array(_) => true,
     }
+}
+
+/// Adds the value of a signal, and its unit.
+fn add_signal(text: &mut String, protocol: &Protocol, (signal, reading): Read) {
+    value::write(text, protocol, signal, reading);
+    unit(text, (signal, reading));
 }
 
 /// Adds the values of an array in brackets, and their unit once.
@@ -271,6 +275,7 @@ fn array(text: &mut String, protocol: &Protocol, elements: &[Option<Read>]) {
 /// Adds the unit of a number.
 fn unit(text: &mut String, (signal, reading): Read) {
     if let (Value::Integer(_) | Value::Number(_), Some(unit)) = (&reading.value, signal.unit) {
-        text.extend([" ", &unit.symbol]);
+        text.push(' ');
+        text.push_str(&unit.symbol);
     }
 }

@@ -23,7 +23,7 @@ pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &
         },
         Value::Name(name) => text.write_str(name),
         Value::Text(value) => text.write_str(&escape::written(value)),
-        Value::Status { set, unknown } => status(text, bit_names(protocol, signal, set), *unknown),
+        Value::Status { set, unknown } => status(text, bit_names(protocol, signal, *set), *unknown),
     };
 }
 
@@ -34,7 +34,8 @@ pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &
 fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
     /// 2 to the power of 50.
     const EXACT: f64 = 1_125_899_906_842_624.0;
-    let scaled = POWERS.get(decimals).map_or(f64::NAN, |power| number.abs() * power);
+    #[expect(clippy::cast_precision_loss, reason = "a double has these powers of ten")]
+    let scaled = POWERS.get(decimals).map_or(f64::NAN, |power| number.abs() * *power as f64);
     let whole = scaled.round();
     // The product is off by less than an eighth.
     if whole < EXACT && (scaled - whole).abs() < 0.25 {
@@ -46,7 +47,7 @@ fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
 }
 
 /// Powers of ten.
-const POWERS: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+const POWERS: [i64; 10] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
 
 /// Writes a number of units of the last decimal.
 fn digits(text: &mut String, is_negative: bool, number: u64, decimals: usize) -> fmt::Result {
@@ -81,6 +82,9 @@ fn decimals(linear: &Linear) -> usize {
     let numbers = [scale.numerator(), scale.denominator(), offset.denominator()];
     // The checks ensure that they fit.
     let [step, scale, offset] = numbers.map(|number| i64::try_from(number).unwrap_or(i64::MAX));
+    if let Some(places) = POWERS.iter().position(|power| (step, offset) == (1, 1) && *power == scale) {
+        return places;
+    }
     let suffices = |units: &i64| {
         let is_exact = units % scale == 0 && units % offset == 0;
         is_exact || step.saturating_abs().checked_mul(*units).is_none_or(|step| step > scale)

@@ -41,8 +41,8 @@ pub enum Value {
     Text(String),
     /// The set bits of a status word.
     Status {
-        /// Numbers of the set bits that have a name.
-        set: Vec<u8>,
+        /// Set bits that have a name.
+        set: u64,
         /// Set bits without a name.
         unknown: u64,
     },

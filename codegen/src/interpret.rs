@@ -26,8 +26,8 @@ use crate::encoding::value_of_bytes;
 pub use crate::encoding::{Input, Value, description, escape};
 use crate::hex;
 use crate::model::{
-    AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, ModelId, NoteRule, Protocol,
-    SelectorId, Side, Signal, SignalId, Table, Travel,
+    AccessId, AddressTypeId, FieldId, FrameId, IdentifierField, Kind, LongMessageId, Message, MessageId, ModelId,
+    NoteRule, Protocol, SelectorId, Side, Signal, SignalId, Table, Travel,
 };
 
 /// A frame as it stood on the bus.
@@ -97,8 +97,8 @@ pub struct Decoded {
     pub set: Option<MessageId>,
     /// The addressing mode, if one fits, and who answers or sends the frame.
     pub addressing: Option<Travel>,
-    /// Values of the identifier's fields.
-    pub identifier: Table<FieldId, u32>,
+    /// The identifier.
+    pub id: u32,
     /// Payload selectors and their raw values.
     pub selectors: Vec<(SelectorId, u64)>,
     /// The long message whose signals these are, if they are not those of a frame.
@@ -115,11 +115,23 @@ pub struct Decoded {
 
 impl Decoded {
     /// Returns the message that has the signals: that of the frame, or what its parts carry together.
+    #[inline]
     pub fn content<'a>(&self, protocol: &'a Protocol) -> &'a Message {
         self.long.map_or(&protocol[self.message], |long| &protocol[long].content)
     }
 
-    /// Returns the addresses that the identifier shows, each with its kind.
+    /// Returns the identifier's fields and their values.
+    #[inline]
+    pub fn identifier<'a>(
+        &self,
+        protocol: &'a Protocol,
+    ) -> impl Iterator<Item = (&'a IdentifierField, u32)> + Clone + use<'a> {
+        let id = self.id;
+        protocol.identifier.fields.iter().map(move |field| (field, field.get(id)))
+    }
+
+    /// Returns the addresses that an identifier shows, each with its kind.
+    #[inline]
     pub fn addresses<'a>(
         &self,
         protocol: &'a Protocol,
@@ -127,13 +139,14 @@ impl Decoded {
     ) -> impl Iterator<Item = (AddressTypeId, i64)> + Clone + use<'a> {
         let is_to_module = self.sender == Side::Controller;
         let pattern = self.addressing.and_then(|travel| protocol[travel.mode].pattern(is_to_module, travel.who));
-        pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
+        pattern.map_or(&[][..], |pattern| &pattern.addresses).iter().map(move |address| {
             (address.address_type, protocol[address.address_type].number(protocol[address.field].get(id)))
         })
     }
 
     /// Tests whether a module reports an error by this frame, for instance a refused request. The
     /// values mean nothing then.
+    #[inline]
     pub fn is_error_reply(&self) -> bool {
         self.sender == Side::Module && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
     }

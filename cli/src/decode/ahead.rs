@@ -29,7 +29,7 @@ pub fn decode(
     out: &mut impl Write,
     state: &mut State,
     counts: &mut Counts,
-    work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String> + Sync,
+    work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<(), String> + Sync,
 ) -> Result<Finish, Failure> {
     let mut input = input.watched();
     let cores = thread::available_parallelism().map_or(1, usize::from);

@@ -84,7 +84,7 @@ impl Choice {
     /// Tests for a set bit of a chosen severity.
     fn is_grave(&self, protocol: &Protocol, signal: &Signal, reading: &Reading) -> bool {
         let Value::Status { set, .. } = &reading.value else { return false };
-        let mut severities = set_bits(protocol, signal, set).filter_map(Severity::of);
+        let mut severities = set_bits(protocol, signal, *set).filter_map(Severity::of);
         severities.any(|severity| self.severity.contains(&severity))
     }
 

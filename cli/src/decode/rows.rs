@@ -1,7 +1,5 @@
 //! A row of CSV a signal, as programs for tables of data want it.
 
-use std::io::{self, Write};
-
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
 use crate::line::{Outcome, all_selectors, bit_names, selected};
@@ -9,7 +7,7 @@ use crate::log;
 use crate::table::others;
 
 const HEADING: &str =
-    "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data,selectors";
+    "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data,selectors\n";
 
 /// Rows that are written as their frames come.
 #[derive(Clone, Default, PartialEq)]
@@ -19,12 +17,8 @@ pub struct Rows {
 
 impl Rows {
     /// Writes a row for each signal of a frame, or one if it has none.
-    ///
-    /// # Errors
-    ///
-    /// Where `out` cannot be written.
-    pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
-        self.begin(out)?;
+    pub fn write(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+        out.extend_from_slice(self.begin().as_bytes());
         let mut address = String::new();
         let (names, readings, notes, selectors) = match outcome.decoded {
             Ok(decoded) => {
@@ -49,17 +43,14 @@ impl Rows {
         let behind = [notes.as_str(), &data, &selectors];
         for signal in signals {
             let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain(behind);
-            writeln!(out, "{}", cells.map(quoted).collect::<Vec<_>>().join(","))?;
+            out.extend_from_slice(cells.map(quoted).collect::<Vec<_>>().join(",").as_bytes());
+            out.push(b'\n');
         }
-        Ok(())
     }
 
-    /// Writes the heading, if it is not written yet.
-    pub fn begin(&mut self, out: &mut impl Write) -> io::Result<()> {
-        if !std::mem::replace(&mut self.started, true) {
-            writeln!(out, "{HEADING}")?;
-        }
-        Ok(())
+    /// Returns the heading, if it is not written yet.
+    pub fn begin(&mut self) -> &'static str {
+        if std::mem::replace(&mut self.started, true) { "" } else { HEADING }
     }
 }
 
@@ -86,7 +77,7 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::Number(number) => format!("{number:?}"),
         Value::Name(name) => name.clone(),
         Value::Text(text) => escape::written(text),
-        Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).collect::<Vec<_>>().join(" "),
+        Value::Status { set, .. } => bit_names(outcome.protocol, signal, *set).collect::<Vec<_>>().join(" "),
     };
     let unit = signal.unit.map_or_else(String::new, |unit| unit.symbol.to_string());
     let raw = match signal.run {

@@ -1,12 +1,10 @@
 //! Turns a decoded frame into a line of JSON.
 
-use std::io::{self, Write};
-
 use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, StatusBit, Table};
+use canspec_codegen::model::{AddressType, IdentifierField, Protocol, SelectorId, Signal, StatusBit};
 
-use crate::fields::{Field, Read, fields};
-use crate::line::json::{integer, list, long_integer, members, name, object, optional, text};
+use crate::fields::{Field, Read, elements, fields};
+use crate::line::json::{integer, list, members, name, natural, number, object, optional, text};
 use crate::line::transport;
 use crate::log;
 use crate::severity::Severity;
@@ -39,107 +37,103 @@ pub struct Whole<'a> {
 }
 
 /// Writes a frame as one line.
-///
-/// # Errors
-///
-/// Where `out` cannot be written.
-pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
-    head(out, outcome)?;
+pub fn write(out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+    head(out, outcome);
     match outcome.decoded {
-        Ok(decoded) => recognised(out, outcome, decoded)?,
-        Err(unrecognised) => unknown(out, outcome.protocol, unrecognised)?,
+        Ok(decoded) => recognised(out, outcome, decoded),
+        Err(unrecognised) => unknown(out, outcome.protocol, unrecognised),
     }
-    out.write_all(b"}\n")
+    out.extend_from_slice(b"}\n");
 }
 
-fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+fn head(out: &mut Vec<u8>, outcome: &Outcome<'_>) {
     match &outcome.whole {
         None => {
-            out.write_all(b"{\"line\":")?;
-            integer(out, outcome.line)?;
+            out.extend_from_slice(b"{\"line\":");
+            natural(out, outcome.line as u64);
         }
         Some(whole) => {
-            out.write_all(b"{\"lines\":")?;
-            list(out, whole.lines, |out, line| integer(out, *line))?;
+            out.extend_from_slice(b"{\"lines\":");
+            list(out, whole.lines, |out, line| natural(out, *line as u64));
         }
     }
-    out.write_all(b",\"time\":")?;
-    out.write_all(outcome.time.unwrap_or("null").as_bytes())?;
-    out.write_all(b",\"channel\":")?;
-    optional(out, outcome.channel, text)?;
+    out.extend_from_slice(b",\"time\":");
+    out.extend_from_slice(outcome.time.unwrap_or("null").as_bytes());
+    out.extend_from_slice(b",\"channel\":");
+    optional(out, outcome.channel, text);
     match &outcome.whole {
         None => {
-            out.write_all(b",\"id\":\"")?;
-            log::write_identifier(out, outcome.frame)?;
-            out.write_all(b"\",\"data\":\"")?;
-            log::write_hexadecimal(out, &outcome.frame.data)?;
-            out.write_all(b"\"")?;
+            out.extend_from_slice(b",\"id\":\"");
+            log::write_identifier(out, outcome.frame);
+            out.extend_from_slice(b"\",\"data\":\"");
+            log::write_hexadecimal(out, &outcome.frame.data);
+            out.extend_from_slice(b"\"");
         }
         Some(whole) => {
-            out.write_all(b",\"data\":")?;
-            optional(out, whole.data.map(log::hexadecimal).as_deref(), name)?;
+            out.extend_from_slice(b",\"data\":");
+            optional(out, whole.data.map(log::hexadecimal).as_deref(), name);
         }
     }
-    out.write_all(b",\"protocol\":\"")?;
-    out.write_all(outcome.protocol.name.as_bytes())
+    out.extend_from_slice(b",\"protocol\":\"");
+    out.extend_from_slice(outcome.protocol.name.as_bytes());
 }
 
-fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) -> io::Result<()> {
+fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
     let protocol = outcome.protocol;
     let message = &protocol.messages[decoded.message];
-    out.write_all(b"\",\"message\":\"")?;
+    out.extend_from_slice(b"\",\"message\":\"");
     let transport = transport::name(protocol, decoded);
-    out.write_all(transport.as_ref().unwrap_or(&message.name).as_bytes())?;
-    out.write_all(b"\",\"access\":\"")?;
-    out.write_all(protocol.accesses[decoded.access].name.as_bytes())?;
-    out.write_all(b"\",\"kind\":\"")?;
-    out.write_all(decoded.kind.name().as_bytes())?;
-    out.write_all(b"\",\"addressing\":")?;
-    optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()), name)?;
-    out.write_all(b",\"addresses\":")?;
+    out.extend_from_slice(transport.as_ref().unwrap_or(&message.name).as_bytes());
+    out.extend_from_slice(b"\",\"access\":\"");
+    out.extend_from_slice(protocol.accesses[decoded.access].name.as_bytes());
+    out.extend_from_slice(b"\",\"kind\":\"");
+    out.extend_from_slice(decoded.kind.name().as_bytes());
+    out.extend_from_slice(b"\",\"addressing\":");
+    optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()), name);
+    out.extend_from_slice(b",\"addresses\":");
     let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
-    object(out, addresses, integer)?;
+    object(out, &addresses, integer);
     let content = decoded.content(protocol);
     let is_number = |signal: &Signal| transport.is_some() && transport::is_number(signal);
-    selectors(out, protocol, &decoded.identifier, all_selectors(outcome, decoded))?;
-    out.write_all(b",\"signals\":")?;
-    let values = fields(content, decoded);
-    let shown = values.iter().filter(|(_, field)| match field {
+    selectors(out, decoded.identifier(protocol), &all_selectors(outcome, decoded));
+    out.extend_from_slice(b",\"signals\":");
+    let shown = fields(content, decoded).filter(|(_, field)| match field {
         Field::Signal((signal, _)) => !is_number(signal),
         Field::Array(_) => true,
     });
-    object(out, shown.map(|(name, field)| (*name, field)), |out, field| match field {
+    object(out, &shown, |out, field| match field {
         Field::Signal((signal, reading)) => value(out, protocol, signal, reading),
-        Field::Array(elements) => array(out, protocol, elements),
-    })?;
+        Field::Array(id) => array(out, protocol, &elements(content, decoded, id)),
+    });
     let of_frame = || decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     let reserved = outcome.whole.as_ref().map_or_else(of_frame, |whole| whole.reserved);
     if reserved.iter().any(|byte| *byte != 0) {
         // It has as many digits as the data.
-        out.write_all(b",\"reserved\":")?;
-        name(out, &log::hexadecimal(reserved))?;
+        out.extend_from_slice(b",\"reserved\":");
+        name(out, &log::hexadecimal(reserved));
     }
     if let Some(incomplete) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
-        out.write_all(b",\"incomplete\":")?;
-        text(out, incomplete)?;
+        out.extend_from_slice(b",\"incomplete\":");
+        text(out, incomplete);
     }
-    out.write_all(b",\"notes\":")?;
+    out.extend_from_slice(b",\"notes\":");
     list(out, &decoded.notes, |out, note| {
-        out.write_all(b"{\"rule\":")?;
-        name(out, note.rule.name())?;
-        out.write_all(b",\"text\":")?;
-        text(out, &note.text)?;
-        out.write_all(b"}")
-    })
+        out.extend_from_slice(b"{\"rule\":");
+        name(out, note.rule.name());
+        out.extend_from_slice(b",\"text\":");
+        text(out, &note.text);
+        out.push(b'}');
+    });
 }
 
-fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognised) -> io::Result<()> {
-    out.write_all(b"\",\"message\":null,\"problem\":{\"kind\":")?;
-    name(out, unrecognised.problem.name())?;
-    out.write_all(b",\"text\":")?;
-    text(out, &unrecognised.text)?;
-    out.write_all(b"}")?;
-    selectors(out, protocol, &unrecognised.identifier, selected(protocol, &unrecognised.selectors))
+fn unknown(out: &mut Vec<u8>, protocol: &Protocol, unrecognised: &Unrecognised) {
+    out.extend_from_slice(b"\",\"message\":null,\"problem\":{\"kind\":");
+    name(out, unrecognised.problem.name());
+    out.extend_from_slice(b",\"text\":");
+    text(out, &unrecognised.text);
+    out.extend_from_slice(b"}");
+    let identifier = protocol.identifier.fields.iter().zip(unrecognised.identifier.iter().copied());
+    selectors(out, identifier, &selected(protocol, &unrecognised.selectors));
 }
 
 /// Names the selectors of a frame, and what numbers a frame of a transport or a message in parts.
@@ -148,8 +142,9 @@ pub fn all_selectors<'a>(
     decoded: &'a Decoded,
 ) -> impl Iterator<Item = (&'a str, u64)> + Clone {
     let content = decoded.content(outcome.protocol);
-    let signals = decoded.signals.iter().filter(|_| transport::name(outcome.protocol, decoded).is_some());
-    let numbers = signals.map(|reading| (&content[reading.signal], reading.bits));
+    let is_of_transport = !decoded.signals.is_empty() && transport::name(outcome.protocol, decoded).is_some();
+    let signals = if is_of_transport { &decoded.signals[..] } else { &[] };
+    let numbers = signals.iter().map(|reading| (&content[reading.signal], reading.bits));
     let numbers = numbers.filter(|(signal, _)| transport::is_number(signal));
     let numbers = numbers.map(|(signal, bits)| (signal.name.as_str(), bits));
     let counter = outcome.whole.as_ref().and_then(|whole| whole.counter);
@@ -166,126 +161,117 @@ pub fn selected<'a>(
 
 /// Writes the fields of the identifier, and the selectors of the data bytes.
 fn selectors<'a>(
-    out: &mut impl Write,
-    protocol: &Protocol,
-    identifier: &Table<FieldId, u32>,
-    selectors: impl Iterator<Item = (&'a str, u64)> + Clone,
-) -> io::Result<()> {
-    out.write_all(b",\"identifier\":")?;
-    let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
-    members(out, names.zip(identifier.iter().copied()), integer)?;
-    out.write_all(b",\"selectors\":")?;
-    object(out, selectors, integer)
+    out: &mut Vec<u8>,
+    identifier: impl Iterator<Item = (&'a IdentifierField, u32)>,
+    selectors: &(impl Iterator<Item = (&'a str, u64)> + Clone),
+) {
+    out.extend_from_slice(b",\"identifier\":");
+    members(out, identifier.map(|(field, value)| (field.name.as_str(), value)), natural);
+    out.extend_from_slice(b",\"selectors\":");
+    object(out, selectors, natural);
 }
 
-fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &Reading) -> io::Result<()> {
-    out.write_all(b"{\"raw\":")?;
+fn value(out: &mut Vec<u8>, protocol: &Protocol, signal: &Signal, reading: &Reading) {
+    out.extend_from_slice(b"{\"raw\":");
     if let Value::Status { set, unknown } = &reading.value {
-        integer(out, reading.bits)?;
-        out.write_all(b",\"set\":")?;
-        list(out, bit_names(protocol, signal, set), name)?;
-        out.write_all(b",\"unknown\":")?;
-        integer(out, *unknown)?;
-        severities(out, &set_bits(protocol, signal, set).collect::<Vec<_>>())?;
-        return out.write_all(b"}");
+        natural(out, reading.bits);
+        out.extend_from_slice(b",\"set\":");
+        list(out, bit_names(protocol, signal, *set), name);
+        out.extend_from_slice(b",\"unknown\":");
+        natural(out, *unknown);
+        severities(out, &set_bits(protocol, signal, *set));
+        return out.push(b'}');
     }
-    raw(out, (signal, reading))?;
-    out.write_all(b",\"value\":")?;
-    physical(out, (signal, reading))?;
-    end(out, signal)
+    raw(out, (signal, reading));
+    out.extend_from_slice(b",\"value\":");
+    physical(out, (signal, reading));
+    end(out, signal);
 }
 
-fn raw(out: &mut impl Write, (signal, reading): Read) -> io::Result<()> {
+fn raw(out: &mut Vec<u8>, (signal, reading): Read) {
     match signal.run {
         Some(_) => name(out, &log::hexadecimal(&reading.bytes)),
-        None => long_integer(out, signal.raw_of(reading.bits)),
+        None => integer(out, signal.raw_of(reading.bits)),
     }
 }
 
-fn physical(out: &mut impl Write, (_, reading): Read) -> io::Result<()> {
+fn physical(out: &mut Vec<u8>, (_, reading): Read) {
     match &reading.value {
-        Value::None | Value::Status { .. } => out.write_all(b"null"),
-        Value::Integer(value) => long_integer(out, *value),
-        Value::Number(value) => Ok(serde_json::to_writer(out, value)?),
+        Value::None | Value::Status { .. } => out.extend_from_slice(b"null"),
+        Value::Integer(value) => integer(out, *value),
+        Value::Number(value) => number(out, *value),
         Value::Name(value) => name(out, value),
         Value::Text(value) => text(out, value),
     }
 }
 
 /// Ends an object with the unit.
-fn end(out: &mut impl Write, signal: &Signal) -> io::Result<()> {
+fn end(out: &mut Vec<u8>, signal: &Signal) {
     if let Some(unit) = signal.unit {
-        out.write_all(b",\"unit\":")?;
-        name(out, &unit.symbol)?;
+        out.extend_from_slice(b",\"unit\":");
+        name(out, &unit.symbol);
     }
-    out.write_all(b"}")
+    out.push(b'}');
 }
 
 /// Writes an array, each member as a list with an item an element. An element that the frame lacks is null.
-fn array(out: &mut impl Write, protocol: &Protocol, elements: &[Option<Read>]) -> io::Result<()> {
-    let Some((signal, _)) = elements.iter().flatten().next() else { return out.write_all(b"{}") };
-    out.write_all(b"{\"raw\":")?;
-    items(out, elements, raw)?;
+fn array(out: &mut Vec<u8>, protocol: &Protocol, elements: &[Option<Read>]) {
+    let Some((signal, _)) = elements.iter().flatten().next() else { return out.extend_from_slice(b"{}") };
+    out.extend_from_slice(b"{\"raw\":");
+    items(out, elements, raw);
     if signal.encoding.status_word().is_some() {
         return status_words(out, protocol, elements);
     }
-    out.write_all(b",\"value\":")?;
-    items(out, elements, physical)?;
-    end(out, signal)
+    out.extend_from_slice(b",\"value\":");
+    items(out, elements, physical);
+    end(out, signal);
 }
 
 /// Writes the bits of an array's status words.
-fn status_words(out: &mut impl Write, protocol: &Protocol, elements: &[Option<Read>]) -> io::Result<()> {
-    let bits = |(signal, reading): Read| set_bits(protocol, signal, status(reading).0).collect::<Vec<_>>();
-    out.write_all(b",\"set\":")?;
-    items(out, elements, |out, read| list(out, bits(read), |out, bit| name(out, &bit.name)))?;
-    out.write_all(b",\"unknown\":")?;
-    items(out, elements, |out, (_, reading)| integer(out, status(reading).1))?;
-    if elements.iter().flatten().any(|read| !by_severity(&bits(*read)).is_empty()) {
-        out.write_all(b",\"severity\":")?;
-        items(out, elements, |out, read| groups(out, by_severity(&bits(read))))?;
+fn status_words(out: &mut Vec<u8>, protocol: &Protocol, elements: &[Option<Read>]) {
+    let bits = |(signal, reading): Read| set_bits(protocol, signal, status(reading).0);
+    out.extend_from_slice(b",\"set\":");
+    items(out, elements, |out, read| list(out, bits(read), |out, bit| name(out, &bit.name)));
+    out.extend_from_slice(b",\"unknown\":");
+    items(out, elements, |out, (_, reading)| natural(out, status(reading).1));
+    if elements.iter().flatten().any(|read| has_severity(bits(*read))) {
+        out.extend_from_slice(b",\"severity\":");
+        items(out, elements, |out, read| by_severity(out, &bits(read)));
     }
-    out.write_all(b"}")
+    out.push(b'}');
 }
 
 /// Returns the set bits of a status word, and those without a name.
-fn status(reading: &Reading) -> (&[u8], u64) {
-    if let Value::Status { set, unknown } = &reading.value { (set, *unknown) } else { (&[], 0) }
+fn status(reading: &Reading) -> (u64, u64) {
+    if let Value::Status { set, unknown } = reading.value { (set, unknown) } else { (0, 0) }
 }
 
-fn items<W: Write>(
-    out: &mut W,
-    elements: &[Option<Read>],
-    mut write: impl FnMut(&mut W, Read) -> io::Result<()>,
-) -> io::Result<()> {
+fn items(out: &mut Vec<u8>, elements: &[Option<Read>], mut write: impl FnMut(&mut Vec<u8>, Read)) {
     list(out, elements, |out, element| match element {
         Some(read) => write(out, *read),
-        None => out.write_all(b"null"),
-    })
+        None => out.extend_from_slice(b"null"),
+    });
 }
 
 /// Writes the names of set bits by their severity, if one of them has any.
-fn severities(out: &mut impl Write, bits: &[&StatusBit]) -> io::Result<()> {
-    let by_severity = by_severity(bits);
-    if by_severity.is_empty() {
-        return Ok(());
+fn severities<'a>(out: &mut Vec<u8>, bits: &(impl Iterator<Item = &'a StatusBit> + Clone)) {
+    if has_severity(bits.clone()) {
+        out.extend_from_slice(b",\"severity\":");
+        by_severity(out, bits);
     }
-    out.write_all(b",\"severity\":")?;
-    groups(out, by_severity)
 }
 
-/// Returns the names of set bits by their severity.
-fn by_severity<'a>(bits: &[&'a StatusBit]) -> Vec<(&'static str, Vec<&'a str>)> {
-    let names = |severity| {
-        let bits = bits.iter().filter(move |bit| Severity::of(bit) == Some(severity));
-        bits.map(|bit| bit.name.as_str()).collect::<Vec<_>>()
-    };
-    let groups = Severity::ALL.into_iter().map(|severity| (severity.word(), names(severity)));
-    groups.filter(|(_, names)| !names.is_empty()).collect()
+fn has_severity<'a>(mut bits: impl Iterator<Item = &'a StatusBit>) -> bool {
+    bits.any(|bit| bit.severity.is_some())
 }
 
-fn groups(out: &mut impl Write, groups: Vec<(&str, Vec<&str>)>) -> io::Result<()> {
-    members(out, groups.into_iter(), |out, names| list(out, names, name))
+/// Writes the names of set bits by their severity.
+fn by_severity<'a>(out: &mut Vec<u8>, bits: &(impl Iterator<Item = &'a StatusBit> + Clone)) {
+    let of = |severity| bits.clone().filter(move |bit| Severity::of(bit) == Some(severity));
+    let groups = Severity::ALL.into_iter().filter(|severity| of(*severity).next().is_some());
+    members(out, groups.map(|severity| (severity.word(), of(severity))), |out, bits| {
+        list(out, bits.map(|bit| bit.name.as_str()), name);
+    });
 }
 
 /// Returns the addresses that the identifier shows, each with its kind.
@@ -302,14 +288,15 @@ pub fn addresses<'a>(
 pub fn set_bits<'a>(
     protocol: &'a Protocol,
     signal: &Signal,
-    set: &[u8],
-) -> impl Iterator<Item = &'a StatusBit> + Clone {
-    let bits = signal.encoding.status_word().map_or(&[][..], |word| &protocol.status_words[word].bits);
-    bits.iter().filter(|bit| set.contains(&bit.bit))
+    set: u64,
+) -> impl Iterator<Item = &'a StatusBit> + Clone + use<'a> {
+    let word = signal.encoding.status_word().filter(|_| set != 0);
+    let bits = word.map_or(&[][..], |word| &protocol.status_words[word].bits);
+    bits.iter().filter(move |bit| set >> bit.bit & 1 == 1)
 }
 
 /// Returns the names of the set bits of a status word.
-pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> impl Iterator<Item = &'a str> {
+pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: u64) -> impl Iterator<Item = &'a str> + use<'a> {
     set_bits(protocol, signal, set).map(|bit| bit.name.as_str())
 }
 
@@ -375,7 +362,7 @@ messages:
         let decoded = &decode(&protocol, None, frame);
         let outcome = Outcome { line: 7, time, channel, frame, protocol: &protocol, decoded, whole: None };
         let mut out = Vec::new();
-        write(&mut out, &outcome).expect("a vector takes everything");
+        write(&mut out, &outcome);
         String::from_utf8(out).expect("JSON is text")
     }
 

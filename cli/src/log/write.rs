@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Form, Frame};
 
-use super::part::{CLASSIC, ERROR_FLAG};
+use super::part::ERROR_FLAG;
 
 /// Writes a data frame as a line of a log, with what it has of stamp and channel.
 ///
@@ -28,15 +28,12 @@ pub fn identifier_text(frame: &Frame) -> String {
 }
 
 /// Writes the identifier as candump prints it.
-///
-/// # Errors
-///
-/// Where `out` cannot be written.
-pub fn write_identifier(out: &mut impl Write, frame: &Frame) -> io::Result<()> {
+pub fn write_identifier(out: &mut Vec<u8>, frame: &Frame) {
     if frame.extended && frame.form != Form::Error {
-        return write_hexadecimal(out, &frame.id.to_be_bytes());
+        out.extend_from_slice(&eight_digits(frame.id.to_be_bytes()));
+    } else {
+        out.extend_from_slice(identifier_text(frame).as_bytes());
     }
-    out.write_all(identifier_text(frame).as_bytes())
 }
 
 /// Returns an identifier in 8 digits if it has 29 bits, else in 3.
@@ -50,17 +47,27 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
 }
 
 /// Writes bytes in upper-case hexadecimal digits.
-///
-/// # Errors
-///
-/// Where `out` cannot be written.
-pub fn write_hexadecimal(out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
-    for bytes in bytes.chunks(CLASSIC) {
-        let mut pairs = [[0; 2]; CLASSIC];
-        pairs.iter_mut().zip(bytes).for_each(|(pair, byte)| *pair = digits(*byte));
-        out.write_all(&pairs.as_flattened()[..2 * bytes.len()])?;
+pub fn write_hexadecimal(out: &mut Vec<u8>, bytes: &[u8]) {
+    let (whole, rest) = bytes.as_chunks();
+    for bytes in whole {
+        out.extend_from_slice(&eight_digits(*bytes));
     }
-    Ok(())
+    for byte in rest {
+        out.extend_from_slice(&digits(*byte));
+    }
+}
+
+/// Returns the digits of four bytes, which are made all at once.
+fn eight_digits(bytes: [u8; 4]) -> [u8; 8] {
+    const ONES: u64 = 0x0101_0101_0101_0101;
+    // Half a byte goes into each byte.
+    let halves = u64::from(u32::from_be_bytes(bytes));
+    let halves = (halves << 16 | halves) & 0x0000_FFFF_0000_FFFF;
+    let halves = (halves << 8 | halves) & 0x00FF_00FF_00FF_00FF;
+    let halves = (halves << 4 | halves) & 0x0F0F_0F0F_0F0F_0F0F;
+    // Six more than 10 or above has bit 4 set.
+    let letters = (halves + 6 * ONES) >> 4 & ONES;
+    (halves + u64::from(b'0') * ONES + letters * u64::from(b'A' - b'9' - 1)).to_be_bytes()
 }
 
 fn digits(byte: u8) -> [u8; 2] {
@@ -81,6 +88,17 @@ mod tests {
             let mut out = Vec::new();
             write(&mut out, entry.time.as_deref(), entry.channel, &entry.frame).expect("a vector takes everything");
             assert_eq!(String::from_utf8(out), Ok(format!("{line}\n")));
+        }
+    }
+
+    #[test]
+    fn bytes_have_the_digits_that_the_standard_library_writes() {
+        let bytes: Vec<u8> = (0..=u8::MAX).chain([7, 0xA9, 0xFE]).collect();
+        for length in [0, 1, 3, 4, 5, 8, 64, bytes.len()] {
+            let mut out = Vec::new();
+            write_hexadecimal(&mut out, &bytes[..length]);
+            let expected: Vec<_> = bytes[..length].iter().map(|byte| format!("{byte:02X}")).collect();
+            assert_eq!(String::from_utf8(out), Ok(expected.concat()));
         }
     }
 

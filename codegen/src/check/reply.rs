@@ -3,8 +3,8 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};
 use crate::model::{
-    AddressPattern, AddressTypeId, Constant, Example, FieldId, FrameLayout, Kind, Message, MessageId, Mode, Protocol,
-    SelectorId, SelectorPlace, Table, Who,
+    AddressPattern, AddressTypeId, Constant, Example, FrameLayout, Kind, Message, MessageId, Mode, Protocol,
+    SelectorId, SelectorPlace, Who,
 };
 use crate::rule::rules;
 
@@ -76,7 +76,7 @@ fn refuses(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Deco
 /// Returns what a frame shows in the place of a selector.
 fn value_of(protocol: &Protocol, frame: &Decoded, selector: SelectorId) -> Option<u64> {
     match protocol[selector].place {
-        SelectorPlace::Identifier(field) => Some(frame.identifier[field].into()),
+        SelectorPlace::Identifier(field) => Some(protocol[field].get(frame.id).into()),
         SelectorPlace::Payload(_) => {
             frame.selectors.iter().find(|(known, _)| *known == selector).map(|(_, value)| *value)
         }
@@ -114,30 +114,24 @@ fn shown(protocol: &Protocol, decoded: &Decoded) -> String {
 /// Says which address of the reply differs from that of the request.
 fn unbound(protocol: &Protocol, mode: &Mode, who: Who, asked: &Decoded, reply: &Decoded) -> Option<String> {
     let (request, pattern) = (mode.request.as_ref()?, mode.reply(who)?);
-    let numbers = numbers(protocol, request, &asked.identifier);
+    let numbers = numbers(protocol, request, asked.id);
     for address in &pattern.addresses {
-        let number = protocol.address_types[address.address_type].number(reply.identifier[address.field]);
+        let number = protocol.address_types[address.address_type].number(protocol[address.field].get(reply.id));
         let bound = numbers.iter().find(|(known, _)| *known == address.address_type);
         if let Some((_, wanted)) = bound.filter(|(_, wanted)| *wanted != number) {
             let name = &protocol.address_types[address.address_type].name;
             return Some(format!("the reply's `{name}` is {number:#04X}, the request's is {wanted:#04X}"));
         }
     }
-    let fields = protocol.identifier.fields.iter().zip(&reply.identifier);
-    let id = fields.fold(0, |id, (field, value)| id | value << field.shift);
-    (id & pattern.mask != pattern.value).then(|| format!("the reply's identifier is not that of `{}`", mode.name))
+    (reply.id & pattern.mask != pattern.value).then(|| format!("the reply's identifier is not that of `{}`", mode.name))
 }
 
 /// Returns the numbers that a pattern binds, by address type.
-fn numbers(
-    protocol: &Protocol,
-    pattern: &AddressPattern,
-    identifier: &Table<FieldId, u32>,
-) -> Vec<(AddressTypeId, i64)> {
+fn numbers(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<(AddressTypeId, i64)> {
     let addresses = pattern.addresses.iter();
     addresses
         .map(|address| {
-            let number = protocol.address_types[address.address_type].number(identifier[address.field]);
+            let number = protocol.address_types[address.address_type].number(protocol[address.field].get(id));
             (address.address_type, number)
         })
         .collect()

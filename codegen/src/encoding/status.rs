@@ -10,10 +10,8 @@ pub struct Status<'a> {
 
 impl Room for Status<'_> {
     fn value(&self, bits: u64) -> Value {
-        let set = self.word.bits.iter().map(|bit| bit.bit).filter(|bit| bits >> bit & 1 == 1);
-        let set: Vec<u8> = if bits == 0 { Vec::new() } else { set.collect() };
-        let unknown = set.iter().fold(bits, |rest, bit| rest & !(1 << bit));
-        Value::Status { set, unknown }
+        let known = self.word.known();
+        Value::Status { set: bits & known, unknown: bits & !known }
     }
 
     fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {

@@ -39,7 +39,7 @@ impl Content {
     /// Takes over a decoded frame, so that encoding gives the same frame.
     pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
         let message = decoded.content(protocol);
-        let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
+        let fields = decoded.identifier(protocol);
         let selectors = decoded.selectors.iter().map(|(id, value)| (protocol[*id].name.clone(), *value));
         let signals = decoded.signals.iter().map(|reading| {
             let signal = &message[reading.signal];
@@ -49,7 +49,7 @@ impl Content {
             message: message.name.clone(),
             access: Some(protocol[decoded.access].name.clone()),
             kind: Some(decoded.kind),
-            identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(*value))).collect(),
+            identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(value))).collect(),
             selectors: selectors.collect(),
             signals: signals.collect(),
             arrays: Vec::new(),
@@ -79,7 +79,7 @@ impl Input {
             Value::Name(text) | Value::Text(text) => Self::Text(text.clone()),
             Value::Status { set, unknown } => {
                 let Some(word) = signal.encoding.status_word() else { return Self::Raw(bits.into()) };
-                let names = protocol[word].bits.iter().filter(|bit| set.contains(&bit.bit));
+                let names = protocol[word].bits.iter().filter(|bit| set >> bit.bit & 1 == 1);
                 Self::Status { set: names.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
             }
         }

@@ -371,7 +371,7 @@ impl<'a> Decoder<'a> {
             model: self.model,
             set: frame.set,
             addressing: addressing.travel.map(|(travel, _)| travel),
-            identifier: self.identifier(),
+            id: self.frame.id,
             selectors,
             long: None,
             signals,

@@ -60,7 +60,7 @@ fn elements_are_read_where_they_follow_one_another() {
     let heat = [("heat_1", 25.0), ("heat_2", -1.0)].map(|(name, value)| (name.to_owned(), Value::Number(value)));
     let parts = [integer("high_1", 1), integer("low_1", 2), integer("high_2", 3), integer("low_2", 4)];
     assert_eq!(numbers, [&heat[..], &parts].concat());
-    let set = |set| Value::Status { set: vec![set], unknown: 0 };
+    let set = |bit: u8| Value::Status { set: 1 << bit, unknown: 0 };
     let alarms: Vec<_> = found.into_iter().filter(|(_, value)| matches!(value, Value::Status { .. })).collect();
     assert_eq!(alarms, [("alarm_1".to_owned(), set(0)), ("alarm_2".to_owned(), set(3))]);
     let text = "heat_2 101 °C is outside -40..100 °C";

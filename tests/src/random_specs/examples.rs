@@ -348,7 +348,7 @@ fn means(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Option<Valu
         Meaning::Number(_) => quantity(signal, exact(signal, reading.bits)?),
         Meaning::Status { set, unknown } => {
             let word = &protocol[signal.encoding.status_word()?];
-            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.clone());
+            let names = word.bits.iter().filter(|bit| set >> bit.bit & 1 == 1).map(|bit| bit.name.clone());
             let others = (0..64).filter(|bit| unknown >> bit & 1 == 1).map(|bit| bit.to_string());
             return Some(list(names.chain(others)));
         }

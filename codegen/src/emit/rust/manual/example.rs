@@ -88,8 +88,9 @@ impl Manual<'_> {
         let mode = &protocol[mode];
         let addresses = || mode.request.iter().flat_map(|pattern| &pattern.addresses);
         let chosen = mode.target.map(|kind| addresses().find(|address| address.address_type == kind));
-        let number =
-            chosen.flatten().map(|address| protocol[address.address_type].number(decoded.identifier[address.field]));
+        let number = chosen
+            .flatten()
+            .map(|address| protocol[address.address_type].number(protocol[address.field].get(decoded.id)));
         let argument = number.map_or_else(String::new, |number| format!("({})", squeezed(&address::number(number))));
         Some((Target { name: mode.name.clone(), number }, format!("Target::{}{argument}", variant.variant)))
     }

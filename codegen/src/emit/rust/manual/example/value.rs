@@ -41,7 +41,7 @@ pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> 
         Value::Name(text) | Value::Text(text) => Some(escape::written(text)),
         Value::Status { set, unknown } => {
             let word = &manual.protocol[signal.encoding.status_word()?];
-            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.clone());
+            let names = word.bits.iter().filter(|bit| set >> bit.bit & 1 == 1).map(|bit| bit.name.clone());
             let unknown = (*unknown != 0).then(|| format!("{unknown:#X}"));
             Some(format!("{{{}}}", names.chain(unknown).collect::<Vec<_>>().join(", ")))
         }
