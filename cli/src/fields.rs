@@ -11,7 +11,7 @@ pub type Read<'a> = (&'a Signal, &'a Reading);
 pub enum Field<'a> {
     /// A signal that is no element.
     Signal(Read<'a>),
-    /// An array, of which the frame has elements.
+    /// An array whose elements the frame has.
     Array(ArrayId),
 }
 

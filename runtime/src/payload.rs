@@ -40,7 +40,7 @@ impl Payload {
         Self::new(message, data).keeping_limits()
     }
 
-    /// Returns the same bytes, of which nobody asks why a value is refused.
+    /// Returns the same bytes. A refused value then gives no reason.
     #[must_use]
     #[inline(always)]
     pub(crate) const fn without_reasons(self) -> Payload<Refused> {
