@@ -84,11 +84,15 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::DEVICE.of(id), Self::TARGET.of(id), Self::SOURCE.of(id)) {
-            (0x1, 0x00..=0x3B, 0xF0..=0xF8) => 1,
-            (0x2, 0x00..=0x07, 0xF0..=0xF8) => 1 << 1,
-            (0x1, 0x3F, 0xF0..=0xF8) => 1 << 2,
-            _ => 0,
+        if (0xF0..=0xF8).contains(&Self::SOURCE.of(id)) {
+            match (Self::DEVICE.of(id), Self::TARGET.of(id)) {
+                (0x1, 0x00..=0x3B) => 1,
+                (0x2, 0x00..=0x07) => 1 << 1,
+                (0x1, 0x3F) => 1 << 2,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

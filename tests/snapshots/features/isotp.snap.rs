@@ -93,10 +93,14 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::FORMAT.of(id), Self::TARGET.of(id), Self::SOURCE.of(id)) {
-            (0x0DB, 0x33, 0xF0..=0xF9) => 1,
-            (0x0DA, 0x00..=0x7F, 0xF0..=0xF9) => 1 << 1,
-            _ => 0,
+        if (0xF0..=0xF9).contains(&Self::SOURCE.of(id)) {
+            match (Self::FORMAT.of(id), Self::TARGET.of(id)) {
+                (0x0DB, 0x33) => 1,
+                (0x0DA, 0x00..=0x7F) => 1 << 1,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

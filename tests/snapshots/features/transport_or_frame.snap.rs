@@ -82,10 +82,14 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::TARGET.of(id), Self::SOURCE.of(id)) {
-            (0xF4, 0x56) => 1,
-            (0xFF, 0x56) => 1 << 1,
-            _ => 0,
+        if Self::SOURCE.of(id) == 0x56 {
+            match Self::TARGET.of(id) {
+                0xF4 => 1,
+                0xFF => 1 << 1,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

@@ -135,10 +135,14 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::PROTOCOL.of(id), Self::ADDRESS.of(id), Self::DIRECTION.of(id)) {
-            (0x21, 0x01..=0x7F, 0x1) => 1,
-            (0x21, 0x00, 0x1) => 1 << 1,
-            _ => 0,
+        if Self::PROTOCOL.of(id) == 0x21 && Self::DIRECTION.of(id) == 0x1 {
+            match Self::ADDRESS.of(id) {
+                0x01..=0x7F => 1,
+                0x00 => 1 << 1,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

@@ -94,12 +94,16 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::DEVICE.of(id), Self::TARGET.of(id), Self::SOURCE.of(id)) {
-            (0xA, 0x00..=0x3B, 0xF0..=0xF8) => 1,
-            (0xB, 0x00..=0x3E, 0xF0..=0xF8) => 1 << 1,
-            (0xA, 0x3F, 0xF0..=0xF8) => 1 << 2,
-            (0xB, 0x3F, 0xF0..=0xF8) => 1 << 3,
-            _ => 0,
+        if (0xF0..=0xF8).contains(&Self::SOURCE.of(id)) {
+            match (Self::DEVICE.of(id), Self::TARGET.of(id)) {
+                (0xA, 0x00..=0x3B) => 1,
+                (0xB, 0x00..=0x3E) => 1 << 1,
+                (0xA, 0x3F) => 1 << 2,
+                (0xB, 0x3F) => 1 << 3,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

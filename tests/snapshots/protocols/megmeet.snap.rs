@@ -116,10 +116,14 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::NODE.of(id), Self::SENDER.of(id)) {
-            (0x01..=0x7F, 0x1) => 1,
-            (0x00, 0x1) => 1 << 1,
-            _ => 0,
+        if Self::SENDER.of(id) == 0x1 {
+            match Self::NODE.of(id) {
+                0x01..=0x7F => 1,
+                0x00 => 1 << 1,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

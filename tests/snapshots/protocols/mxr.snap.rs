@@ -127,12 +127,16 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        match (Self::POINT_TO_POINT.of(id), Self::TARGET.of(id), Self::SOURCE.of(id), Self::GROUP.of(id)) {
-            (0x1, 0x00..=0x3F, 0xF0, _) => 1,
-            (0x0, 0xFE, 0xF0, 0x0..=0x7) => 1 << 1,
-            (0x0, 0xC1..=0xFD, 0xF0, _) => 1 << 2,
-            (0x0, 0xFF, 0xF0, _) => 1 << 3,
-            _ => 0,
+        if Self::SOURCE.of(id) == 0xF0 {
+            match (Self::POINT_TO_POINT.of(id), Self::TARGET.of(id), Self::GROUP.of(id)) {
+                (0x1, 0x00..=0x3F, _) => 1,
+                (0x0, 0xFE, 0x0..=0x7) => 1 << 1,
+                (0x0, 0xC1..=0xFD, _) => 1 << 2,
+                (0x0, 0xFF, _) => 1 << 3,
+                _ => 0,
+            }
+        } else {
+            0
         }
     }
 }

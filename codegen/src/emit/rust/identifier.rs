@@ -1,6 +1,6 @@
 //! The identifier: its fields, and how they show the direction.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::choice::{either, tuple};
@@ -68,29 +68,29 @@ fn directions(Identifier { foreign, heading, documented, .. }: &Identifier) -> T
 }
 
 /// Emits the test in which modes an identifier is a request with documented addresses only, if any mode has requests.
-fn documented_modes(Documented { fields, modes }: &Documented) -> Option<TokenStream> {
-    let values: Vec<_> = fields.iter().map(|place| quote!(Self::#place.of(id))).collect();
+fn documented_modes(Documented { common, fields, modes }: &Documented) -> Option<TokenStream> {
+    let shown = all(common);
     let bits = match modes.as_slice() {
         [] => return None,
-        [only] => bit_of_only(&values, only),
+        [Shown { mode, .. }] if common.is_empty() => shifted(quote!(1), *mode),
+        [Shown { mode, .. }] => shifted(quote!(u8::from(#shown)), *mode),
         several => {
-            let arms = several.iter().map(|Shown { mode, ranges }| {
-                let (pattern, bit) =
-                    (tuple(ranges.iter().map(|own| pattern(own)).collect()), shifted(quote!(1), *mode));
-                quote!(#pattern => #bit,)
-            });
-            let subject = tuple(values);
-            quote!(match #subject { #(#arms)* _ => 0 })
+            let own = mode_of(fields, several);
+            if common.is_empty() { own } else { quote!(if #shown { #own } else { 0 }) }
         }
     };
-    let id = if fields.is_empty() { quote!(_) } else { quote!(id) };
+    let id = if common.is_empty() && fields.is_empty() { quote!(_) } else { quote!(id) };
     Some(quote!(#[inline] fn documented_modes(#id: u32) -> u8 { #bits }))
 }
 
-fn bit_of_only(values: &[TokenStream], Shown { mode, ranges }: &Shown) -> TokenStream {
-    let tests = values.iter().zip(ranges).map(|(value, ranges)| is_among(value, ranges, true));
-    let bit = if values.is_empty() { quote!(1) } else { quote!(u8::from(#(#tests)&&*)) };
-    shifted(bit, *mode)
+/// Tells modes apart by their fields.
+fn mode_of(fields: &[Ident], modes: &[Shown]) -> TokenStream {
+    let subject = tuple(fields.iter().map(|place| quote!(Self::#place.of(id))).collect());
+    let arms = modes.iter().map(|Shown { mode, ranges }| {
+        let (pattern, bit) = (tuple(ranges.iter().map(|own| pattern(own)).collect()), shifted(quote!(1), *mode));
+        quote!(#pattern => #bit,)
+    });
+    quote!(match #subject { #(#arms)* _ => 0 })
 }
 
 fn shifted(bit: TokenStream, mode: usize) -> TokenStream {

@@ -2,7 +2,7 @@
 
 use proc_macro2::Ident;
 
-use super::identifier::{Range, field_place, range};
+use super::identifier::{Comparison, Range, field_place, range};
 use crate::model::{AddressPattern, FieldId, Protocol};
 
 /// How many modes have a bit. The runtime works the others out from their patterns.
@@ -10,13 +10,15 @@ const BITS: usize = 8;
 
 /// The modes whose requests no other mode before them has too.
 pub struct Documented {
-    /// Places of the fields that some mode looks at.
+    /// What requests of each mode show.
+    pub common: Vec<Comparison>,
+    /// Places of the fields that tell the modes apart.
     pub fields: Vec<Ident>,
     /// What requests of the modes show.
     pub modes: Vec<Shown>,
 }
 
-/// What requests of a mode show.
+/// What requests of a mode show besides.
 pub struct Shown {
     /// The number of the mode.
     pub mode: usize,
@@ -39,14 +41,22 @@ impl Documented {
             known
         });
         let is_read = |id: &FieldId| requests.iter().any(|(_, values)| values.iter().any(|(field, _)| field == id));
-        let fields: Vec<_> = protocol.identifier.fields.ids().filter(is_read).collect();
+        let is_common = |id: &FieldId| requests.windows(2).all(|pair| of(*id, &pair[0].1).eq(of(*id, &pair[1].1)));
+        let (common, own): (Vec<_>, Vec<_>) = protocol.identifier.fields.ids().filter(is_read).partition(is_common);
+        let place = |field: &FieldId| field_place(protocol, *field).0;
+        let comparison = |field: &FieldId| Comparison {
+            place: Some(place(field)),
+            inside: true,
+            ranges: ranges(protocol, *field, &requests[0].1),
+        };
         let shown = |(mode, values): &(usize, Values)| Shown {
             mode: *mode,
-            ranges: fields.iter().map(|field| ranges(protocol, *field, values)).collect(),
+            ranges: own.iter().map(|field| ranges(protocol, *field, values)).collect(),
         };
         Self {
+            common: common.iter().map(comparison).collect(),
+            fields: own.iter().map(place).collect(),
             modes: requests.iter().map(shown).collect(),
-            fields: fields.iter().map(|field| field_place(protocol, *field).0).collect(),
         }
     }
 }
@@ -70,6 +80,10 @@ fn excludes(one: &Values, other: &Values) -> bool {
 
 fn ranges(protocol: &Protocol, field: FieldId, values: &Values) -> Vec<Range> {
     let width = protocol[field].width;
-    let own = values.iter().filter(|(known, _)| *known == field).flat_map(|(_, ranges)| ranges);
-    own.map(|ends| range(*ends, width)).collect()
+    of(field, values).map(|ends| range(*ends, width)).collect()
+}
+
+/// Returns the values that a pattern requires of a field.
+fn of(field: FieldId, values: &Values) -> impl Iterator<Item = &(u32, u32)> {
+    values.iter().filter(move |(known, _)| *known == field).flat_map(|(_, ranges)| ranges)
 }
