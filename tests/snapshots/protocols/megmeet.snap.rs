@@ -5628,7 +5628,7 @@ impl Message {
         Received::decode_for(model, frame)
     }
 
-    #[inline]
+    #[inline(always)]
     fn request_2(frame: &Incoming) -> Result<Received, Problem> {
         match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
             (0x81, 0x224) => frame.request(&Barcode2::STORE, Self::Barcode2(frame.values())),
@@ -5705,7 +5705,7 @@ impl Message {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn reply_2(frame: &Incoming) -> Result<Received, Problem> {
         match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
             (0x82, 0x172) => frame.reply(&InputCurrent::READ, Self::InputCurrent(frame.values())),
@@ -5768,7 +5768,7 @@ impl Message {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn reply_3(frame: &Incoming) -> Result<Received, Problem> {
         match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
             (0x82, 0x230) => frame.reply(&PvOutputVoltageSetting::READ, Self::PvOutputVoltageSetting(frame.values())),

@@ -9,6 +9,9 @@ use super::plan::naming::ident;
 /// How many lines the arms in one function may have.
 const LINES: usize = 72;
 
+/// How many parts become part of their caller, since calls between them keep what they return in memory.
+const INLINED: usize = 4;
+
 /// Distributes items evenly over the fewest parts that are short enough, at least one.
 pub fn parts<T>(items: Vec<T>, arm: impl Fn(&T) -> TokenStream) -> Vec<Vec<T>> {
     let height = height();
@@ -33,9 +36,9 @@ pub fn part_name(name: &str, index: usize) -> Ident {
     if index == 0 { ident(name) } else { ident(&format!("{name}_{}", index + 1)) }
 }
 
-/// Returns how a part is inlined. The first becomes part of its caller, and another one may, also in another crate.
+/// Returns how a part is inlined. The first ones become part of their caller, and another one may, also in another crate.
 pub fn inlining(index: usize) -> TokenStream {
-    if index == 0 { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+    if index < INLINED { quote!(#[inline(always)]) } else { quote!(#[inline]) }
 }
 
 /// Returns what counts the lines of an arm in a function of an `impl`.
