@@ -15,13 +15,17 @@ use crate::{
     Layout, Meaning, Payload, Place, Problem, Protocol, Reading, Route, Selector, Severity, StatusBit,
 };
 
+/// Stands for the number of no device model.
+const NO_MODEL: u16 = 1 << 8;
+
 /// A recognised frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<P: Protocol> {
     content: P,
     exchange: &'static Exchange,
     frame: Frame,
-    model: Option<u8>,
+    /// The number of the device model, or [`NO_MODEL`]. It is written at once with the bytes beside it.
+    model: u16,
     kind: Kind,
     /// Whether the content or the identifier is another than that of the received frame.
     is_other: bool,
@@ -67,6 +71,7 @@ impl<P: Protocol> Received<P> {
 
     #[inline(always)]
     pub(crate) fn new(content: P, exchange: &'static Exchange, kind: Kind, frame: Frame, model: Option<u8>) -> Self {
+        let model = model.map_or(NO_MODEL, u16::from);
         Self { content, exchange, frame, model, kind, is_other: false }
     }
 
@@ -159,8 +164,9 @@ impl<P: Protocol> Received<P> {
     }
 
     /// Returns the device model for which the frame was recognised, by number.
-    pub(crate) const fn model(&self) -> Option<u8> {
-        self.model
+    #[inline(always)]
+    pub(crate) fn model(&self) -> Option<u8> {
+        u8::try_from(self.model).ok()
     }
 
     fn way(&self) -> Option<Way> {
@@ -254,7 +260,7 @@ impl<P: Protocol> Received<P> {
             return true;
         }
         let is_offered = self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id()));
-        is_offered && (self.model.is_none() || self.exchange.is_of_each())
+        is_offered && (self.model == NO_MODEL || self.exchange.is_of_each())
     }
 
     /// Writes the values with all tests.
@@ -281,7 +287,7 @@ impl<P: Protocol> Received<P> {
     /// selects a message.
     #[cold]
     fn check_recognised(&self, frame: Frame) -> Result<(), Error> {
-        match Self::decode_by(self.model, &frame) {
+        match Self::decode_by(self.model(), &frame) {
             Ok(again) if again.is_like(self) => Ok(()),
             _ => Err(Error::Identifier { message: self.exchange.message(), id: self.frame.raw_id() }),
         }
@@ -297,7 +303,7 @@ impl<P: Protocol> Received<P> {
     /// Returns the received data, over which the signals are written.
     #[inline(always)]
     fn payload(&self) -> Payload {
-        let payload = Payload::of(self.exchange, self.frame.bytes()).for_model(self.model);
+        let payload = Payload::of(self.exchange, self.frame.bytes()).for_model(self.model());
         let payload = payload.received_with(self.frame.byte_count());
         if self.is_to_module() { payload.keeping_limits() } else { payload }
     }
@@ -311,7 +317,7 @@ impl<P: Protocol> Received<P> {
         if !self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id())) {
             self.check_addressing()?;
         }
-        let is_of_model = self.exchange.is_of(self.model);
+        let is_of_model = self.exchange.is_of(self.model());
         if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
     }
 
