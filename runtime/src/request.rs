@@ -43,7 +43,7 @@ impl Exchange {
         self.built(route.into(), Some(model.into()), message)
     }
 
-    #[inline(always)]
+    #[inline]
     fn built<T: Destination, R>(
         &'static self,
         Route { target, sender }: Route<T>,
@@ -56,7 +56,7 @@ impl Exchange {
         };
         let filter = request.narrowed(target.request(sender)?);
         let mut payload = Payload::within_limits(self.message, filter.data_value()).for_model(model);
-        written(message, &mut payload)?;
+        message.encode(&mut payload)?;
         let length = payload.length().unwrap_or(self.length);
         let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), length);
         let replies = target.replies(who, sender);
@@ -67,12 +67,6 @@ impl Exchange {
         let (reply, refusal) = (shown(self.reply.as_ref()), shown(self.refusal));
         Ok(Request { frame, exchange: self, who, reply, refusal, carried: PhantomData })
     }
-}
-
-/// Writes values. Small programs have the code once for all requests that carry them.
-#[inline]
-fn written(values: &impl Layout, payload: &mut Payload) -> Result<(), Error> {
-    values.encode(payload)
 }
 
 /// The replies that a request gets.
