@@ -103,6 +103,7 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
         writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
     }
     reports(out, protocol)?;
+    starting(out, protocol)?;
     quantities::write(out, protocol)?;
     models(out, protocol)?;
     timing::write(out, protocol)
@@ -116,6 +117,13 @@ fn reports(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
         return Ok(());
     }
     writeln!(out, "\nThe {} sends reports by {}.", protocol.sides.controller, names.join(", "))
+}
+
+/// Says how a module answers while it starts, if the document has a code for that.
+fn starting(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    let code = protocol.error_codes().find_map(|code| Some((code.name, code.starting?)));
+    let Some((name, code)) = code else { return Ok(()) };
+    writeln!(out, "\nWhile a {} starts, `{name}` of its replies is {code}.", protocol.sides.module)
 }
 
 /// Writes a table of the device models, if there are any.

@@ -30,6 +30,7 @@ mod set;
 mod shared_address;
 mod special_value;
 mod stale_allowance;
+mod starting;
 mod transport;
 mod unreachable;
 
@@ -46,7 +47,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 33] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 34] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -67,6 +68,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 33] = [
     (&no_match::NO_MATCH, Some(no_match::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
     (&no_refusal::NO_REFUSAL, Some(no_refusal::check)),
+    (&starting::STARTING, Some(starting::check)),
     (&role::ROLE, Some(role::check)),
     (&rules::QUANTITY_PATH, Some(quantity_path::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),

@@ -39,7 +39,7 @@ pub use id::{
     AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, LongMessageId,
     MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId, TransportId,
 };
-pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
+pub use identifier::{ErrorCode, Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use lacking::{Lacking, only};
 pub use long::{Announcement, Carrier, LongMessage, Parts, Varying};
 pub(crate) use message::first_bytes;

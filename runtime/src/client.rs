@@ -147,6 +147,14 @@ pub enum Heard<P: Protocol> {
         /// The frame.
         received: Received<P>,
     },
+    /// It answers a request: the module [starts](Protocol::STARTING), and can be asked later. The request waits on, and
+    /// is sent again as if nobody had answered. The module is not silent.
+    Starting {
+        /// The request.
+        ticket: Ticket,
+        /// The frame.
+        received: Received<P>,
+    },
     /// It refuses a request: it shows an error code, or is the message that says why.
     Refusal {
         /// The request.
@@ -156,7 +164,7 @@ pub enum Heard<P: Protocol> {
     },
     /// It refuses a request with another number of bytes than the message has, as an error reply may.
     ShortRefusal(Ticket),
-    /// It would answer a request if it had the right length. The request waits on.
+    /// It would answer a request if it had the right length, or says that the module starts. The request waits on.
     Broken(Ticket),
     /// It answers a request that was lost or cancelled, or could answer what a held one replaced.
     Late {

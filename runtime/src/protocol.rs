@@ -17,6 +17,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const NORMAL: Filter;
     /// All addressing modes.
     const MODES: &'static [Mode];
+    /// The error code of replies while a device starts, if the document has one.
+    const STARTING: Option<u64> = None;
     /// The number of data bytes that every frame has, if all have as many.
     const LENGTH: Option<u8> = None;
     /// Whether the controller sends reports.

@@ -8,7 +8,7 @@ use crate::layout::{Signals, Task};
 use crate::payload::Refusing;
 use crate::plumbing::Way;
 use crate::protocol::{is_own, own_id};
-use crate::reply::{has_error, selected};
+use crate::reply::{error_code, has_error, selected};
 use crate::status::set_bits;
 use crate::{
     Addressed, Addressing, AnySignal, Data, Destination, Error, Exchange, Failure, Frame, IdentifierFields, Kind,
@@ -176,6 +176,16 @@ impl<P: Protocol> Received<P> {
     /// Tests whether the frame goes to the controller and shows an error code.
     pub fn is_error_reply(&self) -> bool {
         !self.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
+    }
+
+    /// Returns the error code of an error reply, as [`refuse`](Self::refuse) takes it.
+    pub fn error_code(&self) -> Option<u64> {
+        if self.is_to_module() { None } else { error_code::<P>(self.data_selectors(), &self.frame) }
+    }
+
+    /// Tests whether a device answers that it starts, and can be asked later.
+    pub fn is_starting(&self) -> bool {
+        P::STARTING.is_some() && self.error_code() == P::STARTING
     }
 
     fn data_selectors(&self) -> &'static [Selector] {

@@ -94,6 +94,15 @@ pub fn has_error<P: Protocol>(selectors: &'static [Selector], frame: &Frame) -> 
     !P::NORMAL.matches_id(frame.raw_id()) || selected(selectors, *frame).any(|(selector, raw)| !selector.is_normal(raw))
 }
 
+/// Returns the error code that the identifier shows, or else a selector.
+pub fn error_code<P: Protocol>(selectors: &'static [Selector], frame: &Frame) -> Option<u64> {
+    let (id, fields) = (frame.raw_id(), P::NORMAL.id_mask() & !P::FRAME.id_mask());
+    if P::NORMAL.matches_id(id) {
+        return selected(selectors, *frame).find(|(selector, raw)| !selector.is_normal(*raw)).map(|(_, raw)| raw);
+    }
+    (id & fields).checked_shr(fields.trailing_zeros()).map(u64::from)
+}
+
 /// Returns the selectors that a frame is long enough to have, each with its raw value.
 pub fn selected(selectors: &'static [Selector], frame: Frame) -> impl Iterator<Item = (&'static Selector, u64)> {
     let known = selectors.iter().filter(move |selector| selector.place.is_within(frame.length()));

@@ -60,10 +60,9 @@ pub struct Rules {
     pub gap: u32,
     /// The silence after which a device acts by itself.
     pub watchdog: Option<u32>,
-    /// How long a device takes to start.
+    /// How long a device takes to start. Until then it answers with the code of the document [for
+    /// that](crate::Protocol::STARTING), or not at all.
     pub boot: u32,
-    /// The error code of its answers until then. Without it, it does not answer.
-    pub starting_up: Option<u64>,
 }
 
 /// What comes from the bus.
@@ -186,11 +185,11 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
 
     /// Lets the devices that a request addresses hear and answer it.
     fn deliver(&mut self, request: &Received<P>, now: u32) {
-        let Self { nodes, rules, random, wire, complaints, .. } = self;
+        let Self { nodes, random, wire, complaints, .. } = self;
         let mut speaks = true;
         let asked = request.node();
         for node in nodes.iter_mut().filter(|node| node.is_asked(request, asked)) {
-            let reply = node.answer(request, rules, random, now).unwrap_or_else(|error| {
+            let reply = node.answer(request, random, now).unwrap_or_else(|error| {
                 complaints.add(Complaint::Answer { node: node.number, error });
                 None
             });

@@ -6,7 +6,10 @@ use canspec_codegen::interpret::{self, Form, decode};
 use canspec_codegen::model::Kind as ModelKind;
 use canspec_protocols::infy::{self, ErrorCode, ModuleOutput, SetModuleOutput, Target};
 use canspec_protocols::mxr::{self, HeaderResult, OutputVoltage};
-use canspec_runtime::{Addressed, Destination, Error, Failure, Frame, Kind, Received, embedded_can::Frame as _};
+use canspec_protocols::{gcp, megmeet};
+use canspec_runtime::{
+    Addressed, Destination, Error, Failure, Frame, Kind, Protocol, Received, embedded_can::Frame as _,
+};
 use canspec_tests::{AddressedVisitor, Frames, protocol, received, visit_addressed};
 
 /// How many random frames each protocol sees.
@@ -73,6 +76,22 @@ fn a_refusal_has_its_code_in_the_identifier_or_in_a_selector() {
     assert_eq!(asked.reply(&refused).map(|reply| reply.values), Some(Err(Failure::Error)));
     assert_eq!(refused.data()[1], 0xF2);
     assert_eq!(received.refuse(8, 0x1F2), Err(Error::Code { message: "output_voltage", code: 0x1F2 }));
+}
+
+#[test]
+fn a_module_that_starts_says_so_by_the_code_of_its_document() {
+    fn starts<P: Protocol>(id: u32, data: u64) -> (Option<u64>, bool) {
+        let received = Received::<P>::decode(&frame(id, data)).expect("a reply");
+        (received.error_code(), received.is_starting())
+    }
+    assert_eq!(starts::<infy::Message>(0x1E83_F002, 0), (Some(7), true));
+    assert_eq!(starts::<infy::Message>(0x0E83_F002, 0), (Some(3), false));
+    assert_eq!(starts::<infy::Message>(0x0283_F002, 0), (None, false));
+    assert_eq!(starts::<gcp::Message>(0x1E83_F002, 0), (Some(7), true));
+    assert_eq!(starts::<megmeet::Message>(0x1081_407E, 0x3175_0000_0000_0000), (Some(3), true));
+    assert_eq!(starts::<megmeet::Message>(0x1081_407E, 0x1175_0000_0000_0000), (Some(1), false));
+    // Of Maxwell the document has no such code.
+    assert_eq!(starts::<mxr::Message>(0x060F_8008, 0x42F2_001E_0000_0005), (Some(0xF2), false));
 }
 
 /// Counts the answers that the interpreter reads as such.

@@ -143,7 +143,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Fields => &["{inner: {bits: 0}}", "{letter: {bytes: 4, as: text}, year: {bytes: 5}, day: {bytes: 6}}"],
         Key::Status => &["{late: {bit: 2}}"],
         Key::Format => &["\"{inner}\"", "\"{letter}/{number}\"", "\"{letter}.{year:2}.{day}\""],
-        Key::Const | Key::Normal | Key::Continues => &["1"],
+        Key::Const | Key::Normal | Key::Starting | Key::Continues => &["1"],
         // The second one lies in the range of the controllers.
         Key::Send => &["1", "0xF1"],
         Key::Default => &["11", "5", "bright", "busy", "x"],
@@ -173,7 +173,9 @@ type Place = Vec<String>;
 /// Keys that have an effect, but cannot be changed alone without an error.
 ///
 /// All bits of the identifier are taken. An address that counts down has another offset. Only one field continues a set.
-const ALWAYS_ERRORS: [(Key, char); 3] = [(Key::Bits, 'I'), (Key::Scale, 'A'), (Key::Continues, 'I')];
+/// A code of devices that start needs one of those that answer.
+const ALWAYS_ERRORS: [(Key, char); 5] =
+    [(Key::Bits, 'I'), (Key::Scale, 'A'), (Key::Starting, 'I'), (Key::Starting, 'H'), (Key::Continues, 'I')];
 
 /// What one sample of a key does in one place.
 struct Trial {

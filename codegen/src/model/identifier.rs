@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, EnumerationId, FieldId, Table, place};
+use crate::model::{Doc, EnumerationId, FieldId, Protocol, Table, place};
 
 /// The identifier's layout.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -38,6 +38,8 @@ pub struct IdentifierField {
     pub send: Option<u32>,
     /// The value of a reply that is no error reply.
     pub normal: Option<u32>,
+    /// The value of a reply while the device starts.
+    pub starting: Option<u32>,
     /// The value that says that more frames of a set follow.
     pub continues: Option<u32>,
     /// Names of its values.
@@ -84,6 +86,8 @@ pub struct Selector {
     pub place: SelectorPlace,
     /// The value of a reply that is no error reply.
     pub normal: Option<u64>,
+    /// The value of a reply while the device starts.
+    pub starting: Option<u64>,
     /// The value that says that more frames of a set follow.
     pub continues: Option<u64>,
     /// Names of its values.
@@ -109,4 +113,41 @@ pub struct Foreign {
     pub doc: Doc,
     /// Inclusive ranges of raw values of a field, or of the whole identifier. All must hold.
     pub ranges: Vec<(Option<FieldId>, u32, u32)>,
+}
+
+/// The field of replies with the error code.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct ErrorCode<'a> {
+    /// Name of the field.
+    pub name: &'a str,
+    /// What the spec says beside it.
+    pub doc: &'a Doc,
+    /// The value of a reply that is no error reply.
+    pub normal: Option<u64>,
+    /// The value of a reply while the device starts.
+    pub starting: Option<u64>,
+    /// Names of its values.
+    pub enumeration: Option<EnumerationId>,
+}
+
+impl Protocol {
+    /// Returns the fields of the identifier and of the data that say whether a reply is an error reply.
+    pub fn error_codes(&self) -> impl Iterator<Item = ErrorCode<'_>> {
+        let fields = self.identifier.fields.iter().map(|field| ErrorCode {
+            name: &field.name,
+            doc: &field.doc,
+            normal: field.normal.map(u64::from),
+            starting: field.starting.map(u64::from),
+            enumeration: field.enumeration,
+        });
+        let selectors = self.selectors.iter().map(|selector| ErrorCode {
+            name: &selector.name,
+            doc: &selector.doc,
+            normal: selector.normal,
+            starting: selector.starting,
+            enumeration: selector.enumeration,
+        });
+        fields.chain(selectors).filter(|code| code.normal.is_some() || code.starting.is_some())
+    }
 }

@@ -92,12 +92,15 @@ impl Resolver<'_> {
         let constant = number(Key::Const, &merged.field.constant);
         let send = number(Key::Send, &merged.field.send);
         let normal = number(Key::Normal, &merged.field.normal);
+        let starting = number(Key::Starting, &merged.field.starting);
         let continues = number(Key::Continues, &merged.field.continues);
         let doc = Doc { title: texts::text(merged.field.title.as_ref()), ..remarks!(field).doc(path, None) };
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
         let run = Run { high, low, place: path.key("bits") };
         let name = name.to_owned();
-        Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, continues, enumeration }, run))
+        let field =
+            IdentifierField { name, doc, shift: low, width, constant, send, normal, starting, continues, enumeration };
+        Some((field, run))
     }
 
     /// Tests that the entries leave no gap and share no bit. Returns whether the identifier is the

@@ -124,7 +124,7 @@ impl Role {
             Key::Format => self == Self::Packed,
             Key::Const => among(&[Self::IdentifierConstant, Self::Constant]),
             Key::Send => among(&[Self::Identifier, Self::Address]),
-            Key::Normal | Key::Continues => among(&[Self::Identifier, Self::Header]),
+            Key::Normal | Key::Starting | Key::Continues => among(&[Self::Identifier, Self::Header]),
             Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::Bytes, Self::OfModel]),
             Key::Outside | Key::Examples => self == Self::Address,
             Key::Reply => signal || among(RUNS) || among(&[Self::Word, Self::Packed]),
@@ -228,6 +228,7 @@ fn is_of_values(key: Key) -> bool {
         | Key::Status
         | Key::Send
         | Key::Normal
+        | Key::Starting
         | Key::Continues
         | Key::Default
         | Key::Outside

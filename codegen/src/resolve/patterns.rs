@@ -4,7 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Key, Pattern};
+use crate::syntax::ast::{self, Field, Key, Pattern};
 use crate::syntax::tree::{Path, Step};
 
 impl Resolver<'_> {
@@ -15,22 +15,27 @@ impl Resolver<'_> {
         let leaves = self.header_leaves(&path, &spec.header);
         self.tables.given_up_header = leaves.given_up;
         for signal in leaves.signals {
-            let (normal, continues) = self.header_values(&signal).unwrap_or_default();
+            let [normal, starting, continues] = self.header_values(&signal).unwrap_or_default();
             let index = self.add_selector(signal, normal);
-            self.tables.selectors[index].continues = continues;
+            let selector = &mut self.tables.selectors[index];
+            (selector.starting, selector.continues) = (starting, continues);
             self.tables.header.push(index);
         }
     }
 
-    /// Returns the raw values of `normal` and `continues` of a field.
-    fn header_values(&mut self, signal: &Signal) -> Option<(Option<u64>, Option<u64>)> {
+    /// Returns the raw values of `normal`, `starting` and `continues` of a field.
+    fn header_values(&mut self, signal: &Signal) -> Option<[Option<u64>; 3]> {
         let field = ast_field(self.spec, &signal.doc.path)?.clone();
         let merged = self.merged(&signal.doc.path, &field)?;
         let mut value = |key: Key, text: &Option<String>| {
             let path = merged.path(self.diagnostics, key);
             text.as_ref().and_then(|text| self.integer(&path, text, 0, signal.place.max()))
         };
-        Some((value(Key::Normal, &merged.field.normal), value(Key::Continues, &merged.field.continues)))
+        let Field { normal, starting, continues, .. } = &merged.field;
+        Some(
+            [(Key::Normal, normal), (Key::Starting, starting), (Key::Continues, continues)]
+                .map(|(key, text)| value(key, text)),
+        )
     }
 
     /// Adds a payload selector.
@@ -40,7 +45,15 @@ impl Resolver<'_> {
         let known = self.tables.selectors.position(|known| known.name == signal.name && known.place == place);
         known.unwrap_or_else(|| {
             let Signal { name, doc, .. } = signal;
-            self.tables.selectors.push(Selector { name, doc, place, normal, continues: None, enumeration })
+            self.tables.selectors.push(Selector {
+                name,
+                doc,
+                place,
+                normal,
+                starting: None,
+                continues: None,
+                enumeration,
+            })
         })
     }
 
@@ -75,6 +88,7 @@ impl Resolver<'_> {
             doc: field.doc.clone(),
             place: SelectorPlace::Identifier(id),
             normal: None,
+            starting: None,
             continues: None,
             enumeration: field.enumeration,
         }))

@@ -89,9 +89,15 @@ fn of_field(key: Key) -> Demand {
         Key::Bits => Demand::Form(PLACE),
         Key::Repeat => Demand::Form(Form { message: "Write `3`, or `1..48` in a message of parts.", ..PLACE }),
         Key::Step | Key::First => Demand::Form(NUMBER),
-        Key::Fill | Key::Scale | Key::Offset | Key::Const | Key::Send | Key::Normal | Key::Continues | Key::Reply => {
-            Demand::Form(NUMBER)
-        }
+        Key::Fill
+        | Key::Scale
+        | Key::Offset
+        | Key::Const
+        | Key::Send
+        | Key::Normal
+        | Key::Starting
+        | Key::Continues
+        | Key::Reply => Demand::Form(NUMBER),
         Key::Range => Demand::Form(RANGE),
         Key::As => Demand::Choice(NUMBER_FORMATS.map(|(word, _)| word).to_vec()),
         Key::In => Demand::Choice(kinds()),

@@ -7,6 +7,8 @@ use super::hold::Hold;
 use super::order::Leader;
 use super::{Heard, Nodes, Pace, Step, has_one_answer};
 use crate::clock::{earlier, has_come, is_later, later_of};
+use crate::frame::classic;
+use crate::reply::error_code;
 use crate::{Protocol, Received, Replies, Request};
 
 /// Names a request of a client.
@@ -228,13 +230,17 @@ impl<P: Protocol> Entry<P> {
         if self.deaf().is_some() {
             return Heard::Late { ticket, received };
         }
+        let is_starting = is_refusal && received.is_starting();
         let agrees = |hold: Hold<P>| !is_refusal && hold.agrees(&self.request, &received, model);
-        let is_good = self.hold.is_none_or(agrees);
+        let is_good = !is_starting && self.hold.is_none_or(agrees);
         let is_group_known = group.is_some();
         if let (Some(group), Some(node)) = (group, self.request.sender(received.frame())) {
             if !group.answered(node, is_good) {
                 return Heard::Twice { ticket, received };
             }
+        }
+        if is_starting {
+            return Heard::Starting { ticket, received };
         }
         if !is_good && !is_refusal {
             return Heard::NotInEffect { ticket, received };
@@ -245,12 +251,18 @@ impl<P: Protocol> Entry<P> {
 
     /// Takes a frame of a wrong length for the answer if it refuses the request.
     pub fn answered_short(&mut self, frame: &impl embedded_can::Frame, is_group_known: bool) -> Heard<P> {
-        if self.deaf().is_some() || self.request.refuses(frame) != Some(true) {
+        if self.deaf().is_some() || self.request.refuses(frame) != Some(true) || self.is_told_to_wait(frame) {
             return Heard::Broken(self.ticket);
         }
         self.unheard = 0;
         self.count(is_group_known);
         Heard::ShortRefusal(self.ticket)
+    }
+
+    /// Tests whether an answer of any length says that the module starts.
+    fn is_told_to_wait(&self, frame: &impl embedded_can::Frame) -> bool {
+        let code = || error_code::<P>(self.request.replies().filter()?.data_selectors(), &classic(frame)?);
+        P::STARTING.is_some() && code() == P::STARTING
     }
 
     /// Notes an answer that counts. The round ends if there is only one. It is not sent again if one of nobody

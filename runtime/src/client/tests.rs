@@ -154,6 +154,26 @@ fn a_refusal_of_any_length_ends_a_request() {
 }
 
 #[test]
+fn a_module_that_starts_is_asked_again_and_is_not_silent() {
+    let starts = frame(0x1D07_F003, [2, 0xF0, 0, 0]);
+    let (mut client, ticket) = asked(3, 0);
+    assert!(is_starting(&client.handle(&starts), ticket));
+    assert_eq!([client.step(99), client.step(100)], [Step::Wait(Some(100)), frame_sent(*heat(3).frame())]);
+    let short = Frame::new_raw(0x1D07_F003, true, [2, 0xF0, 0, 0, 0, 0, 0, 0], 2);
+    assert!(matches!(client.handle(&short), Heard::Broken(of) if of == ticket));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+
+    let (mut client, ticket) = asked(3, 0);
+    assert!(is_starting(&client.handle(&starts), ticket));
+    assert_eq!(client.step(100), frame_sent(*heat(3).frame()));
+    assert_eq!([client.step(200), client.step(200)], [Step::Lost(ticket), Step::Wait(Some(300))]);
+}
+
+fn is_starting(heard: &Heard<Message>, of: Ticket) -> bool {
+    matches!(heard, Heard::Starting { ticket, received } if *ticket == of && received.error_code() == Some(7))
+}
+
+#[test]
 fn nobody_answers_all_and_each_module_answers_a_group() {
     let mut client = Asking::new(PACE);
     let all = client.ask(HEAT.set(To::All).expect("a legal request"), 0).expect("room");

@@ -10,6 +10,9 @@ pub enum Answer<P> {
     Values(P),
     /// A reply with this error code.
     Refusal(u64),
+    /// A reply with the error code of the document for a device that [starts](Protocol::STARTING), or nothing if there
+    /// is none.
+    Starting,
     /// Nothing.
     Silence,
 }

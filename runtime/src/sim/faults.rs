@@ -24,6 +24,8 @@ pub struct Faults {
     /// The longest time in milliseconds until a reply comes. The shortest is 1. No reply comes before an earlier frame
     /// of the device, so it can take longer.
     pub slowest: u32,
+    /// Whether it says nothing while it starts, also if the document has a code for that.
+    pub is_mute_at_start: bool,
     /// When it starts anew by itself.
     pub restarts: Option<u32>,
     /// When it dies. It neither hears nor says anything from then on.
@@ -42,18 +44,21 @@ impl Faults {
         code: 0,
         drifted: 0,
         slowest: 1,
+        is_mute_at_start: false,
         restarts: None,
         dies: None,
     };
 
     /// Draws faults: up to `most` of a hundred frames have each. One device of four starts anew, and one
-    /// of eight dies, at a time before `end`.
+    /// of eight dies, at a time before `end`. One of two says nothing while it starts.
     pub fn random(random: &mut Random, most: u8, end: u32) -> Self {
         let mut draw = || u8::try_from(random.below(u32::from(most).saturating_add(1))).unwrap_or(most);
         let [deaf, lost, twice, broken, disguised, refused, drifted] =
             [draw(), draw(), draw(), draw(), draw(), draw(), draw()];
         let restarts = random.chance(25).then(|| random.below(end));
         let dies = random.chance(12).then(|| random.below(end));
-        Self { deaf, lost, twice, broken, disguised, refused, drifted, restarts, dies, ..Self::NONE }
+        let is_mute_at_start = random.chance(50);
+        let failing = Self { restarts, dies, is_mute_at_start, ..Self::NONE };
+        Self { deaf, lost, twice, broken, disguised, refused, drifted, ..failing }
     }
 }

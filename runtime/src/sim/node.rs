@@ -101,7 +101,6 @@ impl<D> Node<D> {
     pub fn answer<P: Addressed>(
         &mut self,
         request: &Received<P>,
-        rules: &Rules,
         random: &mut Random,
         now: u32,
     ) -> Result<Option<Frame>, Error>
@@ -113,7 +112,7 @@ impl<D> Node<D> {
         }
         (self.heard, self.is_alone) = (now, false);
         let answer = if self.boots.is_some() {
-            rules.starting_up.map_or(Answer::Silence, Answer::Refusal)
+            if self.faults.is_mute_at_start { Answer::Silence } else { Answer::Starting }
         } else if happens(random, self.faults.refused, &mut self.tally.refused) {
             Answer::Refusal(self.faults.code)
         } else {
@@ -125,6 +124,10 @@ impl<D> Node<D> {
             }
             Answer::Values(values) => request.answer(self.number, values),
             Answer::Refusal(code) => request.refuse(self.number, code),
+            Answer::Starting => match P::STARTING {
+                Some(code) => request.refuse(self.number, code),
+                None => return Ok(None),
+            },
             Answer::Silence => return Ok(None),
         };
         match reply {

@@ -8,7 +8,7 @@ use crate::plumbing::Who;
 use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
 use crate::{Error, Frame, Problem, Received};
 
-const RULES: Rules = Rules { gap: 20, watchdog: Some(1000), boot: 300, starting_up: Some(7) };
+const RULES: Rules = Rules { gap: 20, watchdog: Some(1000), boot: 300 };
 
 /// A heater, which does what it is told.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -167,6 +167,17 @@ fn a_module_that_starts_anew_refuses_until_it_has_started() {
     assert!(bench.is_up(3));
     let heater = bench.device(3).expect("heater 3");
     assert_eq!((heater.power_w.to_bits(), &*heater.events), (0.0_f64.to_bits(), &[(100, "on")][..]));
+}
+
+#[test]
+fn a_module_can_be_mute_while_it_starts() {
+    let mut bench = heaters(1);
+    bench.faults(3).expect("heater 3").is_mute_at_start = true;
+    bench.restart(3, 0);
+    bench.send(&set(To::Heater(3)), 1);
+    assert_eq!(events(&mut bench, 1..400), []);
+    bench.send(&set(To::Heater(3)), 400);
+    assert_eq!(events(&mut bench, 400..402).len(), 1);
 }
 
 #[test]

@@ -189,6 +189,7 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(ERROR, 0);
+    const STARTING: Option<u64> = Some(7);
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];

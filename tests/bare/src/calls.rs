@@ -171,7 +171,7 @@ impl<P: Addressed + Unknown> Device<P> for Any {
 
 /// Simulates modules.
 fn bench<P: Addressed + Unknown>() {
-    let rules = Rules { gap: unknown(), watchdog: Some(unknown()), boot: unknown(), starting_up: Some(unknown()) };
+    let rules = Rules { gap: unknown(), watchdog: Some(unknown()), boot: unknown() };
     let mut bench = Bench::<P, Any, 2, 3>::new([(unknown(), Any), (unknown(), Any)], rules, unknown());
     bench.another_controller(unknown_frame(), unknown(), unknown());
     for _ in 0..unknown::<u8>() {

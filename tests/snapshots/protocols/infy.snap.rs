@@ -2158,6 +2158,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
+    const STARTING: Option<u64> = Some(7);
     const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 

@@ -5832,6 +5832,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
+    const STARTING: Option<u64> = Some(3);
     const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;

@@ -30,6 +30,9 @@ pub struct Bus {
     pub priority: Option<String>,
     /// How a transport uses the identifier.
     pub transport: Option<Map>,
+    /// Whether the identifier has an error code, and whether that says that a device starts.
+    pub has_code: bool,
+    pub has_starting: bool,
     /// Whether a field says that more frames of a set follow.
     pub continues: bool,
     /// Data bytes that the header takes.
@@ -158,8 +161,13 @@ impl Draft {
         for key in ["send", "normal"] {
             if self.chance(35) {
                 let value = self.random.u8(..8);
-                let value = self.number(value);
-                field.put(key, value);
+                let text = self.number(value);
+                field.put(key, text);
+                bus.has_code |= key == "normal";
+                if key == "normal" && self.chance(40) {
+                    field.put("starting", ((value + 1) % 8).to_string());
+                    bus.has_starting = true;
+                }
             }
         }
         let field = self.with_types(field, &["bits"], 0);
@@ -314,10 +322,14 @@ impl Draft {
             });
             bus.function = Some(Chooser { name, bits: 8 });
         }
-        if self.chance(30) {
+        if !bus.has_starting && self.chance(30) {
             let value = self.random.u8(..3);
+            let is_only = !bus.has_code;
             self.header_field(bus, scope, 1, |draft, field| {
                 field.put("normal", value.to_string());
+                if is_only && draft.chance(50) {
+                    field.put("starting", draft.random.u8(3..).to_string());
+                }
                 if draft.chance(50) {
                     draft.named_numbers(field, 8);
                 }

@@ -10,8 +10,6 @@ use canspec_runtime::{Protocol as _, Received};
 
 /// How long modules assign their addresses.
 const ASSIGNMENT: u32 = 3000;
-/// The error type of their answers meanwhile.
-const RECOGNITION: u64 = 3;
 /// How long the program then asks nothing.
 const PAUSE: u32 = 1000;
 /// When a module is added, and when all ends.
@@ -33,7 +31,7 @@ impl Device<Message> for Module {
         }
         if now < self.assigns_until {
             self.disturbed += 1;
-            return Answer::Refusal(RECOGNITION);
+            return Answer::Starting;
         }
         let slave = request.node().and_then(|node| u8::try_from(node).ok()).expect("one module is asked");
         match request.content() {
@@ -90,7 +88,7 @@ impl Counter {
 
     fn handle(&mut self, frame: &Frame, now: u32) {
         match self.client.handle(frame) {
-            Heard::Refusal { received, .. } if is_assigning(&received) => self.pause(now),
+            Heard::Starting { .. } => self.pause(now),
             Heard::Answer { ticket, .. } | Heard::Refusal { ticket, .. } => self.ended(ticket, true, now),
             _ => {}
         }
@@ -140,11 +138,6 @@ impl Counter {
             }
         }
     }
-}
-
-/// Tests whether an answer says that addresses are being assigned.
-fn is_assigning(received: &Received<Message>) -> bool {
-    received.selectors().any(|(selector, raw)| (selector.name, raw) == ("error_type", RECOGNITION))
 }
 
 /// Counts three modules, and then four.

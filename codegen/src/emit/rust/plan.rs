@@ -78,6 +78,8 @@ pub struct Plan {
     pub address_types: Vec<AddressType>,
     /// Addressing modes.
     pub modes: Vec<Mode>,
+    /// The error code of replies while a device starts, if there is one.
+    pub starting: Option<u64>,
     /// The times that have a role, if there are any.
     pub timing: Option<Timing>,
     /// The parts of accesses that messages share.
@@ -148,6 +150,7 @@ impl Plan {
                 .map(|(known, name)| AddressType::new(protocol, name, known, &mut constants))
                 .collect(),
             modes: addressing,
+            starting: protocol.error_codes().find_map(|code| code.starting),
             timing: Timing::new(protocol),
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),

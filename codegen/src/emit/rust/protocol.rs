@@ -7,9 +7,9 @@ use super::derives::Derives;
 use super::dispatch::{measuring, recognising};
 use super::filter::normal;
 use super::parts::{inlining, part_name, parts};
-use super::plan::Plan;
 use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
+use super::plan::{Plan, literal};
 use super::way::{node, way};
 
 /// Emits `Message`: its type, then how a frame is recognised.
@@ -136,6 +136,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             const TIMING: Timing = TIMING;
         )
     });
+    let starting = plan.starting.iter().map(|code| literal::decimal(*code));
     let truths = truths(plan);
     let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
@@ -149,6 +150,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             const NORMAL: Filter = #normal;
             #(const LENGTH: Option<u8> = Some(#length);)*
             const MODES: &'static [Mode] = &[#(#modes),*];
+            #(const STARTING: Option<u64> = Some(#starting);)*
             #timing
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
             #(const #truths: bool = true;)*

@@ -187,6 +187,9 @@ keys! {
     /// Raw value that a field of the identifier or the header has if the reply reports no error:
     /// `0`; none if absent. Any other value gets the note `error_code`.
     Normal "normal": normal: Option<String>, inherited;
+    /// Raw value that a field with `normal` has in replies while the device starts, or is busy with itself: `7`;
+    /// none if absent. It can be asked later.
+    Starting "starting": starting: Option<String>, inherited;
     /// Raw value of a field of the identifier or the header if more frames of a set follow: `1`;
     /// none if absent. With any other value the frame is the last one. Only one field of a protocol
     /// has this key.

@@ -72,6 +72,17 @@ fn a_refusal_of_a_member_is_an_answer() {
 }
 
 #[test]
+fn a_member_that_starts_is_missing_and_not_silent() {
+    let (mut client, ticket) = asked();
+    assert!(is_answer(&client.handle(&answer(4)), ticket));
+    let starts = frame(0x1D07_F001, [2, 0xF0, 0, 0]);
+    assert!(matches!(client.handle(&starts), Heard::Starting { ticket: of, .. } if of == ticket));
+    assert_eq!(client.step(100), frame_sent(*group().frame()));
+    let missing = Step::Missing { ticket, nodes: [1].into() };
+    assert_eq!([client.step(200), client.step(200)], [missing, Step::Wait(Some(300))]);
+}
+
+#[test]
 fn a_group_is_asked_again_while_members_are_missing_and_says_which() {
     let (mut client, ticket) = asked();
     assert!(is_answer(&client.handle(&answer(4)), ticket));

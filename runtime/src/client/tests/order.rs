@@ -104,6 +104,22 @@ fn a_second_that_nobody_answers_is_sent_again_after_the_first_is_in_effect_anew(
 }
 
 #[test]
+fn what_a_module_hears_while_it_starts_is_said_again_from_the_first_on() {
+    let (mut client, [first, second]) = held();
+    let (set, on) = (frame_sent(*set(1500.0).frame()), frame_sent(*on(3).frame()));
+    let starts = |client: &mut Asking, frame: &Frame, of| matches!(client.handle(frame), Heard::Starting { ticket, .. } if ticket == of);
+    assert_eq!(client.step(0), set);
+    assert!(starts(&mut client, &frame(0x1D07_F003, [2, 0xF0, 0, 0]), first));
+    assert_eq!([client.step(99), client.step(100)], [Step::Wait(Some(100)), set]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(client.step(120), on);
+    assert!(starts(&mut client, &frame(0x1D0C_F003, [0; 4]), second));
+    assert_eq!([220, 299, 300].map(|now| client.step(now)), [Step::Wait(Some(300)), Step::Wait(Some(300)), set]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(client.step(320), on);
+}
+
+#[test]
 fn a_second_that_was_not_sent_when_the_first_is_renewed_waits_for_it_anew() {
     let (mut client, [first, _]) = held();
     assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));

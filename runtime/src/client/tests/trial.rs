@@ -92,7 +92,7 @@ fn power(random: &mut Random) -> f64 {
 impl Trial {
     fn new(seed: u64, pace: Pace) -> Self {
         let mut random = Random::new(seed);
-        let rules = Rules { gap: pace.gap, watchdog: Some(5000), boot: 300, starting_up: Some(7) };
+        let rules = Rules { gap: pace.gap, watchdog: Some(5000), boot: 300 };
         let heater = |number| (number, Heater { group: (number > 3).then_some(2), ..Heater::default() });
         let mut bench = Bench::new([1, 2, 3, 4, 5, 6].map(heater), rules, seed);
         let mut client = Client::new(pace);
@@ -219,7 +219,11 @@ impl Trial {
             Heard::ShortRefusal(ticket) => self.end(ticket, 1, None, now),
             Heard::NotInEffect { .. } => self.outcome.echoes[1] += 1,
             Heard::Late { .. } => self.outcome.echoes[0] += 1,
-            Heard::Broken(_) | Heard::Twice { .. } | Heard::Other(_) | Heard::Unrecognised(_) => {}
+            Heard::Starting { .. }
+            | Heard::Broken(_)
+            | Heard::Twice { .. }
+            | Heard::Other(_)
+            | Heard::Unrecognised(_) => {}
         }
     }
 

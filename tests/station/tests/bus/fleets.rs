@@ -40,12 +40,12 @@ fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -
 pub fn infies(seed: u64) -> Bus<infy::Message, 8, 2> {
     let group = |number| (number, infy::Target::Group(number));
     let modules = [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Charger::new(group(1 + node / 4), infy_tells)));
-    Bus::new([group(1), group(2)], modules, Some(7), seed)
+    Bus::new([group(1), group(2)], modules, seed)
 }
 
 /// Four modules in the group 5.
 pub fn maxwells(seed: u64) -> Bus<mxr::Message, 4, 1> {
     let group = (5, mxr::Target::Group(5));
     let modules = [3, 4, 5, 6].map(|node| (node, Charger::new(group, mxr_tells)));
-    Bus::new([group], modules, None, seed)
+    Bus::new([group], modules, seed)
 }

@@ -106,16 +106,11 @@ impl<P: Quantities + Addressed, const N: usize, const G: usize> Bus<P, N, G>
 where
     P::Target: PartialEq,
 {
-    pub fn new(
-        groups: [(u8, P::Target); G],
-        modules: [(u8, Charger<P>); N],
-        starting_up: Option<u64>,
-        seed: u64,
-    ) -> Self {
+    pub fn new(groups: [(u8, P::Target); G], modules: [(u8, Charger<P>); N], seed: u64) -> Self {
         let settings = Settings { pace: pace::<P>(), round: ROUND, rise_ma: RISE_MA };
         Self {
             station: Station::new(settings, core::array::from_fn(|node| u8::try_from(node).expect("below 16")), groups),
-            bench: Bench::new(modules, rules::<P>(starting_up), seed),
+            bench: Bench::new(modules, rules::<P>(), seed),
             now: 0,
             sent: Vec::new(),
             heard: 0,
@@ -186,7 +181,7 @@ pub fn pace<P: Protocol>() -> Pace {
 }
 
 /// Returns what the devices of the document expect.
-pub fn rules<P: Protocol>(starting_up: Option<u64>) -> Rules {
+pub fn rules<P: Protocol>() -> Rules {
     let watchdog = P::TIMING.watchdog.map(|time| u32::try_from(time.shortest.as_millis()).expect("it is short"));
-    Rules { gap: pace::<P>().gap, watchdog, boot: 1500, starting_up }
+    Rules { gap: pace::<P>().gap, watchdog, boot: 1500 }
 }
