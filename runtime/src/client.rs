@@ -48,6 +48,7 @@
 //! Time is a number of milliseconds from any start, and may wrap around. Call `poll` at least once
 //! in 24 days.
 
+mod duty;
 mod entry;
 mod group;
 mod health;
@@ -58,6 +59,7 @@ mod pace;
 #[cfg(test)]
 mod tests;
 
+pub use duty::{Duty, Output};
 pub use entry::Ticket;
 pub use group::NoMembers;
 pub use hold::{Agrees, NotHeld, repeats};

@@ -12,7 +12,7 @@
 //! program delivers or stops again. So the driver must not hand over the frames that the station itself has sent.
 #![no_std]
 
-use canspec_runtime::client::{Client, Heard, Nodes, NotHeld, Pace, Step, Ticket};
+use canspec_runtime::client::{Client, Duty, Heard, Nodes, NotHeld, Output, Pace, Step, Ticket};
 use canspec_runtime::{Addressed, Error, Frame, Protocol, Quantities, Quantity, Received, Severity};
 
 /// What is read in each round. The first one says whether a module delivers.
@@ -100,7 +100,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Tests whether a group is known to be off: it has modules, and each has said so since it was stopped.
     pub fn is_off(&self, group: u8) -> bool {
         let mut members = self.modules.iter().filter(|module| module.group == Some(group)).peekable();
-        members.peek().is_some() && members.all(|module| module.state == State::Off)
+        members.peek().is_some() && members.all(|module| module.duty.output() == Output::Off)
     }
 
     /// Tests whether another controller has been heard since the program let a group deliver.
@@ -136,6 +136,10 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             Heard::Answer { ticket, received } => self.answered(Some(ticket), &received, now),
             // A late answer tells of no request, but of the module.
             Heard::Late { received, .. } => self.answered(None, &received, now),
+            Heard::Starting { received, .. } => {
+                let node = received.node();
+                self.forget(|module| node == Some(module.node.into()));
+            }
             Heard::Other(received) if received.is_to_module() => self.give_way(now),
             // What is held or read is asked again in the next round.
             _ => {}
@@ -189,26 +193,14 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             module.reads += 1;
         }
         let values = match group.task {
-            Task::Watch => {
-                module.is_confirmed = true;
-                return Ok(());
-            }
+            Task::Watch => &[],
             Task::Deliver { voltage_mv, current_ma } => {
                 module.step_ma = current_ma.min(module.reached_ma.saturating_add(*rise_ma));
                 &output(voltage_mv, module.step_ma)[..]
             }
             Task::Stop => &OFF,
         };
-        let (mut first, mut last) = (None, None);
-        for request in P::set(values, target).into_iter().flatten() {
-            let held = match last {
-                None => client.hold(request, *round, agrees, now)?,
-                Some(last) => client.hold_after(last, request, agrees, now)?,
-            };
-            (first, last) = (first.or(Some(held)), Some(held));
-        }
-        (module.first, module.last) = (first, last);
-        Ok(())
+        module.duty.hold(client, P::set(values, target).into_iter().flatten(), *round, agrees, now)
     }
 
     /// Begins a task of a group.
@@ -217,7 +209,10 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         self.next = now;
         let group = self.groups.iter_mut().find(|group| group.number == number).ok_or(Refused::Group)?;
         let members = modules.iter_mut().filter(|module| module.group == Some(number));
-        members.for_each(|module| module.begin(client, now));
+        members.for_each(|module| {
+            module.duty.end(client);
+            module.due = now;
+        });
         group.task = task;
         group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
         let stop = P::set(&OFF, group.target).into_iter().flatten().filter(|_| task == Task::Stop);
@@ -238,7 +233,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let group = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok());
         if group.is_some() && group != module.group {
             module.group = group;
-            module.begin(&mut self.client, now);
+            module.duty.end(&mut self.client);
+            module.due = now;
             for Group { number, target, .. } in self.groups {
                 let members = self.modules.iter().filter(|module| module.group == Some(number));
                 // There is room for each group.
@@ -259,21 +255,11 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Knows no more of some modules than that they are there.
     fn forget(&mut self, is_one: impl Fn(&Module<P>) -> bool) {
         for module in self.modules.iter_mut().filter(|module| is_one(module)) {
-            (module.state, module.reached_ma, module.is_confirmed) = (State::Unknown, 0, false);
+            module.duty.forget();
+            module.reached_ma = 0;
             (module.voltage_mv, module.current_ma, module.status) = (None, None, None);
         }
     }
-}
-
-/// What is known of the output of a module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Nothing: it is silent, or has not said anything since it was told something else.
-    Unknown,
-    /// It has said that it is off. If it is to be off, it has also confirmed the switch-off before.
-    Off,
-    /// It has said that it is on.
-    On,
 }
 
 /// An address, and the module that has it if one was found.
@@ -283,8 +269,8 @@ pub struct Module<P: Protocol> {
     pub node: u8,
     /// The number of its group, if it has said so.
     pub group: Option<u8>,
-    /// What is known of its output.
-    pub state: State,
+    /// What it is to do, and what is known of its output.
+    pub duty: Duty,
     /// The voltage at its output in mV.
     pub voltage_mv: Option<i32>,
     /// The current at its output in mA.
@@ -296,11 +282,6 @@ pub struct Module<P: Protocol> {
     /// What reads its state, and how many requests read it.
     watch: Option<Ticket>,
     reads: usize,
-    /// The first and the last request of what it is to do.
-    first: Option<Ticket>,
-    last: Option<Ticket>,
-    /// Whether the last one was in effect since the task began, or there is none.
-    is_confirmed: bool,
     /// The current that is asked for, and the one that was in effect, in mA.
     step_ma: i32,
     reached_ma: i32,
@@ -311,16 +292,13 @@ impl<P: Quantities + Addressed> Module<P> {
         Self {
             node,
             group: None,
-            state: State::Unknown,
+            duty: Duty::NONE,
             voltage_mv: None,
             current_ma: None,
             status: None,
             due: 0,
             watch: None,
             reads: 0,
-            first: None,
-            last: None,
-            is_confirmed: true,
             step_ma: 0,
             reached_ma: 0,
         }
@@ -331,26 +309,15 @@ impl<P: Quantities + Addressed> Module<P> {
         self.status.as_ref()?.conditions().filter_map(|bit| bit.severity).max()
     }
 
-    /// Ends what it was to do, as its group gets a task.
-    fn begin<const R: usize, const G: usize>(&mut self, client: &mut Client<P, R, G>, now: u32) {
-        self.first.take().into_iter().for_each(|ticket| client.cancel(ticket));
-        (self.state, self.last, self.is_confirmed, self.due) = (State::Unknown, None, false, now);
-    }
-
     /// Takes an answer.
     fn answered(&mut self, ticket: Ticket, received: &Received<P>) {
-        if self.last == Some(ticket) {
-            (self.is_confirmed, self.reached_ma) = (true, self.step_ma);
+        if self.duty.answered(ticket, received) {
+            self.reached_ma = self.step_ma;
         }
         self.voltage_mv = received.quantity(Quantity::OUTPUT_VOLTAGE).or(self.voltage_mv);
         self.current_ma = received.quantity(Quantity::OUTPUT_CURRENT).or(self.current_ma);
         if let Some(is_on) = received.quantity(Quantity::DELIVERING) {
             self.status = Some(*received);
-            self.state = match is_on {
-                0 if self.is_confirmed => State::Off,
-                0 => State::Unknown,
-                _ => State::On,
-            };
             self.reached_ma = if is_on == 0 { 0 } else { self.reached_ma };
         }
     }

@@ -7,8 +7,9 @@ mod seeds;
 use bus::fleets::{infies, maxwells};
 use bus::{Bus, Charger, RISE_MA};
 use canspec_protocols::{infy, mxr};
+use canspec_runtime::client::Output;
 use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
-use canspec_station::{Refused, State};
+use canspec_station::Refused;
 use seeds::{CYCLE, run};
 
 /// The voltage in mV, and the current in mA.
@@ -31,7 +32,7 @@ fn modules_are_found_and_the_current_rises_step_by_step() {
         assert_eq!((device.is_on, device.voltage_mv.zip(device.current_ma)), (is_told, output), "module {node}");
         assert_eq!(device.steepest_ma, if is_told { RISE_MA } else { 0 });
         let module = bus.station.modules().find(|module| module.node == node).expect("it is found");
-        assert_eq!(module.state, if is_told { State::On } else { State::Off });
+        assert_eq!(module.duty.output(), if is_told { Output::On } else { Output::Off });
         let shown = if is_told { (500_000, 10_000) } else { (0, 0) };
         assert_eq!(module.voltage_mv.zip(module.current_ma), Some(shown));
         assert_eq!(module.severity(), if is_told { None } else { Some(Severity::State) });
@@ -132,7 +133,7 @@ fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
     bus.run(stopped + 5000);
     assert_eq!([0, 1, 2, 3, 4].map(|node| bus.device(node).is_on), [false, false, false, false, true]);
     let states = [0, 1, 2, 3, 4].map(|node| bus.state(node).expect("it is found"));
-    assert_eq!(states, [State::Off, State::Off, State::Unknown, State::Off, State::On]);
+    assert_eq!(states, [Output::Off, Output::Off, Output::Unknown, Output::Off, Output::On]);
     assert_eq!([1, 2].map(|group| bus.station.is_off(group)), [false, false]);
     bus.faults(2).lost = 0;
     bus.run(stopped + 10_000);

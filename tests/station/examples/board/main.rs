@@ -54,7 +54,13 @@ fn show<P: Quantities + Addressed, const N: usize, const G: usize>(when: &str, b
     say!("{}, {} ms:", { when }, bus.now);
     for module in bus.station.modules() {
         let output = (module.voltage_mv, module.current_ma);
-        say!("  module {} of group {:?}: {:?}, {:?} mV and mA", module.node, module.group, module.state, output);
+        say!(
+            "  module {} of group {:?}: {:?}, {:?} mV and mA",
+            module.node,
+            module.group,
+            module.duty.output(),
+            output
+        );
     }
 }
 

@@ -9,10 +9,10 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::time::Duration;
 
-use canspec_runtime::client::Pace;
+use canspec_runtime::client::{Output, Pace};
 use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
 use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received, Time, Timing};
-use canspec_station::{Settings, State, Station};
+use canspec_station::{Settings, Station};
 
 /// A module of any protocol: it keeps what is set, and tells it.
 #[derive(Clone, Copy)]
@@ -146,8 +146,8 @@ where
     }
 
     /// Returns what the station says of a module, if it has found it.
-    pub fn state(&self, node: u8) -> Option<State> {
-        self.station.modules().find(|module| module.node == node).map(|module| module.state)
+    pub fn state(&self, node: u8) -> Option<Output> {
+        self.station.modules().find(|module| module.node == node).map(|module| module.duty.output())
     }
 
     pub fn device(&mut self, node: u8) -> &mut Charger<P> {

@@ -13,10 +13,9 @@ use std::collections::HashMap;
 use std::fmt;
 use std::ops::AddAssign;
 
-use canspec_runtime::client::{Client, Heard, Step, Ticket};
+use canspec_runtime::client::{Client, Heard, Output, Step, Ticket};
 use canspec_runtime::sim::{Event, Faults, Random, Tally};
 use canspec_runtime::{Addressed, Quantities, Quantity, Request};
-use canspec_station::State;
 
 use crate::bus::{Bus, RISE_MA, pace};
 
@@ -154,7 +153,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
                 if device.was_bare {
                     return Err(format!("module {node} is switched on without its set-point"));
                 }
-                if is_stopped && device.is_on && self.bus.state(node) == Some(State::Off) {
+                if is_stopped && device.is_on && self.bus.state(node) == Some(Output::Off) {
                     return Err(format!("module {node} is on, and said to be off"));
                 }
             }
@@ -233,7 +232,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
     fn check_states(&mut self) -> Result<(), String> {
         for node in self.nodes {
             let (state, is_dead) = (self.bus.state(node), self.bus.faults(node).dies.is_some());
-            let expected = if is_dead { State::Unknown } else { State::Off };
+            let expected = if is_dead { Output::Unknown } else { Output::Off };
             if state != Some(expected) && !(is_dead && state.is_none()) {
                 return Err(format!("module {node} is {state:?}, not {expected:?}"));
             }
