@@ -50,7 +50,9 @@ pub use quantity::{Fixed, QuantityPaths, SignalPath};
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
-pub use signal::{ByteRun, Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
+pub use signal::{
+    ByteRun, Conduct, Enumeration, NamedValue, OfModel, OutOfRange, Range, Severity, Signal, StatusBit, StatusWord,
+};
 pub(crate) use timing::nanoseconds;
 pub use timing::{TimeRole, Timing};
 pub use transport::{Groups, Isotp, Standard, Transport, TransportFrame};

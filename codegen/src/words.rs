@@ -1,6 +1,6 @@
 //! The words of the language that a key chooses from.
 
-use crate::model::{Numeral, Origin, Severity, Side, Who};
+use crate::model::{Numeral, Origin, OutOfRange, Severity, Side, Who};
 
 /// How a number, a text or raw bytes are written in bits.
 #[derive(Clone, Copy)]
@@ -23,6 +23,13 @@ pub const NUMBER_FORMATS: [(&str, NumberFormat); 6] = [
 
 /// What may stand after `absent`, and whether all ones mean that there is no value.
 pub const ABSENT: [(&str, bool); 2] = [("none", false), ("ones", true)];
+
+/// What may stand after `out_of_range`.
+pub const OUT_OF_RANGE: [(&str, OutOfRange); 3] =
+    [("refused", OutOfRange::Refused), ("ignored", OutOfRange::Ignored), ("limited", OutOfRange::Limited)];
+
+/// What may stand after `power_off`, and whether the value is kept.
+pub const POWER_OFF: [(&str, bool); 2] = [("kept", true), ("lost", false)];
 
 /// What may stand after `outside`.
 pub const OUTSIDE: [&str; 1] = ["refused"];

@@ -92,7 +92,7 @@ pub use packed::PackedText;
 pub use payload::Payload;
 pub use place::{Bits, Data, Place};
 pub use protocol::{Addressed, IdentifierFields, Problem, Protocol};
-pub use quantity::{Quantities, Quantity, QuantityKind, ReadPath, SetPath};
+pub use quantity::{OutOfRange, Quantities, Quantity, QuantityKind, ReadPath, SetPath};
 pub use raw::Meaning;
 pub use received::Received;
 pub use reply::{Failure, Reply};

@@ -9,7 +9,7 @@ pub(crate) mod single;
 #[cfg(test)]
 mod tests;
 
-pub use path::{ReadPath, SetPath, States};
+pub use path::{OutOfRange, ReadPath, SetPath, States};
 
 use crate::{Destination, Error, Kind, Protocol, Received, Request, Route};
 

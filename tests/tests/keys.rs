@@ -132,7 +132,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Step => &["2"],
         Key::First => &["0"],
         Key::Type => &["titled"],
-        Key::As | Key::Absent => return words(key),
+        Key::As | Key::Absent | Key::OutOfRange | Key::PowerOff => return words(key),
         Key::Fill => &["0x20"],
         Key::Scale => &["1/4", "-1"],
         Key::Repeat | Key::Offset => &["3"],

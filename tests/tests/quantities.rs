@@ -1,7 +1,9 @@
 //! Quantities: one program drives every vendor's devices. The frames are those that the documents print.
 
 use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
-use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Received};
+use canspec_runtime::client::{Client, Duty, Heard, Output, Pace, Step};
+use canspec_runtime::sim::{Answer, Device, Keeper};
+use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Received, Request};
 use canspec_tests::{
     devices_any_vendor as feature, devices_any_vendor_in_steps as in_steps, devices_any_vendor_switched as in_f32,
     features_controller_report as charging, infy_in_steps,
@@ -222,6 +224,111 @@ fn an_echo_confirms_what_was_asked_within_a_tolerance() {
     let (off, on) = (0x0100_0000_0000_0000, 0);
     assert_eq!([off, on].map(|said| infy((0x029A_00F0, off), (0x029A_F000, said), 9999)), [true, false]);
     assert!(!infy((0x0283_00F0, 0), (0x0283_F000, 0x43FA_0000_4060_0000), 100));
+}
+
+/// A module that has been told something, and says nothing of its own.
+fn told<P: Quantities + Addressed<Target: PartialEq>>(told: &[(u32, u64)]) -> (Keeper<P, 4>, Vec<Answer<P>>) {
+    let mut module = Keeper::new(|_, _| Answer::Silence);
+    let requests = told.iter().map(|(id, data)| Received::decode(&frame(*id, *data)).expect("a request"));
+    let answers = requests.map(|request| module.answer(&request, 0)).collect();
+    (module, answers)
+}
+
+#[test]
+fn a_simulated_module_does_with_a_value_out_of_range_what_its_document_says() {
+    let set = |millivolts: u64, milliamperes: u64| (0x029C_00F0, millivolts << 32 | milliamperes);
+    // Section 3.3 of INFY: a voltage is ignored, and too high a current is limited. No model has more than 50 A.
+    let (module, answers) = told::<infy::Message>(&[set(500_000, 10_000), set(5_000_000, 60_000)]);
+    assert_eq!([VOLTAGE, CURRENT].map(|quantity| module.value(quantity)), [Some(500_000), Some(50_000)]);
+    assert!(matches!(answers[..], [Answer::Values(_), Answer::Silence]));
+    // Section 7.3 of the document of Huawei: it is refused. 51 V, then 60 V.
+    let (module, answers) =
+        told::<huawei::Message>(&[(0x1081_80FE, 0x0100_0000_0000_CC00), (0x1081_80FE, 0x0100_0000_0000_F000)]);
+    assert_eq!(module.value(VOLTAGE), Some(51_000));
+    assert!(matches!(answers[..], [Answer::Values(_), Answer::Silence]));
+}
+
+#[test]
+fn a_simulated_module_forgets_without_power_what_its_document_does_not_keep() {
+    let after_restart = |mut module: Keeper<infy::Message, 4>| {
+        module.power_on(0);
+        [VOLTAGE, Quantity::GROUP].map(|quantity| module.value(quantity))
+    };
+    let (module, _) = told(&[(0x029C_00F0, 0x0007_A120_0000_2710), (0x0296_00F0, 0x0500_0000_0000_0000)]);
+    assert_eq!([VOLTAGE, Quantity::GROUP].map(|quantity| module.value(quantity)), [Some(500_000), Some(5)]);
+    assert_eq!(after_restart(module), [None; 2]);
+    // Section 4 of Maxwell: the group is stored.
+    let (mut module, _) =
+        told::<mxr::Message>(&[(0x0608_0F80, 0x0300_0021_442F_0000), (0x0608_0F80, 0x0300_001E_0000_0005)]);
+    module.power_on(0);
+    assert_eq!([VOLTAGE, Quantity::GROUP].map(|quantity| module.value(quantity)), [None, Some(5)]);
+}
+
+/// Module 2 of INFY, what it is to do, and the program that tells it.
+struct Told {
+    client: Client<infy::Message, 8>,
+    duty: Duty,
+    now: u32,
+}
+
+impl Told {
+    fn hold(&mut self, values: &[(Quantity, i32)]) {
+        let requests = infy::Message::set(values, infy::Target::Module(2)).expect("it is legal");
+        let agrees = |asked: &infy::Received, said: &infy::Received| said.confirms(asked, 0);
+        self.duty.hold(&mut self.client, requests, 1000, agrees, self.now).expect("there is room");
+    }
+
+    /// Returns the next frame that is sent.
+    fn sent(&mut self) -> Frame {
+        loop {
+            match self.client.poll(self.now) {
+                Step::Send { frame, .. } => return frame,
+                Step::Wait(until) => self.now = until.expect("there is something to do"),
+                Step::Lost(_) | Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+            }
+        }
+    }
+
+    /// Takes a reply. Returns whether it confirms what is held, and what is known of the output.
+    fn hears(&mut self, id: u32, data: u64) -> (bool, Output) {
+        let Heard::Answer { ticket, received } = self.client.handle(&frame(id, data)) else { panic!("it is asked") };
+        (self.duty.answered(ticket, &received), self.duty.output())
+    }
+
+    /// Asks whether the module is on, and takes its reply. Bit 0 of byte 6 is set while it is off.
+    fn reads(&mut self, is_off: bool) -> Output {
+        let request: Request<_, _> = infy::ModuleStatus::read(infy::Target::Module(2)).expect("a module");
+        self.client.ask(request, self.now).expect("there is room");
+        while self.sent() != *request.frame() {}
+        self.hears(0x0284_F002, if is_off { 0x0100 } else { 0 }).1
+    }
+}
+
+#[test]
+fn a_module_is_off_only_if_it_says_so_after_it_has_confirmed_that() {
+    let client = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 0 });
+    let mut told = Told { client, duty: Duty::NONE, now: 0 };
+    assert_eq!(told.duty.output(), Output::Unknown);
+    // It was told nothing.
+    assert_eq!([true, false].map(|is_off| told.reads(is_off)), [Output::Off, Output::On]);
+    told.hold(&[(VOLTAGE, 500_000), (CURRENT, 10_000), (DELIVERING, 1)]);
+    let set_point = frame(0x029C_02F0, 0x0007_A120_0000_2710);
+    assert_eq!(told.sent(), set_point);
+    assert_eq!(told.hears(0x029C_F002, 0x0007_A120_0000_2710), (false, Output::On));
+    assert_eq!(told.sent(), frame(0x029A_02F0, 0));
+    assert_eq!(told.hears(0x029A_F002, 0), (true, Output::On));
+    told.duty.end(&mut told.client);
+    assert_eq!(told.duty.output(), Output::Unknown);
+    told.hold(&[(DELIVERING, 0)]);
+    // What was held is not renewed. A module that is off, and has not confirmed it, can still be switched on.
+    let off = 0x0100_0000_0000_0000;
+    assert_eq!([told.sent(), told.sent()], [frame(0x029A_02F0, off); 2]);
+    assert_eq!([true, false].map(|is_off| told.reads(is_off)), [Output::Unknown, Output::On]);
+    while told.sent() != frame(0x029A_02F0, off) {}
+    assert_eq!(told.hears(0x029A_F002, off), (true, Output::On));
+    assert_eq!(told.reads(true), Output::Off);
+    told.duty.forget();
+    assert_eq!([told.duty.output(), told.reads(true)], [Output::Unknown; 2]);
 }
 
 #[test]

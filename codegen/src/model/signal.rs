@@ -166,12 +166,35 @@ pub struct Signal {
     pub model_ranges: Vec<OfModel<Range>>,
     /// Raw values that device models start with, if they have their own.
     pub model_defaults: Vec<OfModel<i128>>,
+    /// What a device does with the value.
+    pub conduct: Conduct,
     /// The only kinds of frames that have it; empty if the access decides.
     pub kinds: Vec<Kind>,
     /// The only device models that have it; empty if every model has it.
     pub models: Vec<ModelId>,
     /// The array of the message that it is an element of.
     pub element: Option<Element>,
+}
+
+/// What a device does with a value that it is told, as far as the document says it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Conduct {
+    /// What it does with a value outside the range.
+    pub out_of_range: Option<OutOfRange>,
+    /// It keeps the value without power.
+    pub keeps: Option<bool>,
+}
+
+/// What a device does with a value outside the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OutOfRange {
+    /// It answers the request with an error.
+    Refused,
+    /// It goes on with the value before.
+    Ignored,
+    /// It takes the nearest value inside.
+    Limited,
 }
 
 /// The number of whole bytes that a text takes, if they are more than eight or may vary.

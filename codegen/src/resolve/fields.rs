@@ -353,6 +353,7 @@ impl Resolver<'_> {
             default_path,
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
+            conduct: self.conduct(merged, Role::Packed),
             kinds,
             models,
             element: None,

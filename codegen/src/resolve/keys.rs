@@ -126,6 +126,8 @@ impl Role {
             Key::Send => among(&[Self::Identifier, Self::Address]),
             Key::Normal | Key::Starting | Key::Continues => among(&[Self::Identifier, Self::Header]),
             Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::Bytes, Self::OfModel]),
+            Key::OutOfRange => among(QUANTITIES),
+            Key::PowerOff => signal || among(RUNS) || self == Self::Packed,
             Key::Outside | Key::Examples => self == Self::Address,
             Key::Reply => signal || among(RUNS) || among(&[Self::Word, Self::Packed]),
             Key::In => signal || among(RUNS) || among(&[Self::Constant, Self::Packed]),
@@ -231,6 +233,8 @@ fn is_of_values(key: Key) -> bool {
         | Key::Starting
         | Key::Continues
         | Key::Default
+        | Key::OutOfRange
+        | Key::PowerOff
         | Key::Outside
         | Key::Reply
         | Key::In

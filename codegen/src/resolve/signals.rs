@@ -4,12 +4,14 @@ use canspec_runtime::Place;
 
 use super::Resolver;
 use super::arrays::Windowed;
+use super::keys::{Role, Site};
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{DeviceModel, Doc, Misfit, ModelId, OfModel, Range, Signal, TypeOfModel};
+use crate::model::{Conduct, DeviceModel, Doc, Misfit, ModelId, OfModel, Range, Signal, TypeOfModel};
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
+use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::Path;
+use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
 /// What a device model can change of a type.
 const OF_MODELS: [Key; 5] = [Key::Range, Key::Default, Key::Scale, Key::Offset, Key::Unit];
@@ -91,6 +93,7 @@ impl Resolver<'_> {
         let range = field.range.as_ref().and_then(|text| self.range_of(&range_path, text, unit));
         let kinds = self.kinds(&merged.path(self.diagnostics, Key::In), &field.kinds);
         let models = self.models_named(&merged.path(self.diagnostics, Key::Models), &field.models);
+        let conduct = self.conduct(merged, Role::of_field(Site::Message, &encoding));
         let mut signal = Signal {
             name: name.to_owned(),
             doc,
@@ -108,6 +111,7 @@ impl Resolver<'_> {
             default_path: default_path.clone(),
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
+            conduct,
             kinds,
             models,
             element: None,
@@ -187,6 +191,33 @@ impl Resolver<'_> {
             models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && known.changes(key)));
         let hidden = changing.filter(|(id, _)| self.changed(merged, *id, key).is_none());
         hidden.map(|(_, model)| model).collect()
+    }
+
+    /// Reads what a device does with the value.
+    pub fn conduct(&mut self, merged: &Merged, role: Role) -> Conduct {
+        let Field { out_of_range, power_off, range, .. } = &merged.field;
+        let at = merged.path(self.diagnostics, Key::OutOfRange);
+        let is_limited =
+            range.is_some() || self.tables.models.ids().any(|model| self.range_of_model(merged, model).is_some());
+        if out_of_range.is_some() && role.reads(Key::OutOfRange) && !is_limited {
+            let text = "`out_of_range` says nothing here: no range says what the document allows".to_owned();
+            self.error_with_help(&rules::MISPLACED_KEY, at.at_key(), text, "write the `range`, or take it out");
+        }
+        let out_of_range = self.one_of(&at, "answer to a value out of range", out_of_range.as_ref(), &OUT_OF_RANGE);
+        let at = merged.path(self.diagnostics, Key::PowerOff);
+        Conduct { out_of_range, keeps: self.one_of(&at, "fate of a value", power_off.as_ref(), &POWER_OFF) }
+    }
+
+    /// Reads one of a few words.
+    fn one_of<T: Copy>(
+        &mut self,
+        at: &Path,
+        what: &str,
+        word: Option<&String>,
+        words: &[(&'static str, T)],
+    ) -> Option<T> {
+        let index = self.lookup(at, what, word?, words.iter().map(|(word, _)| *word))?;
+        Some(words[index].1)
     }
 
     pub fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {

@@ -6,7 +6,10 @@ use crate::model::NoteRule;
 use crate::model::{Failure, Kind, TimeRole, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
-use crate::words::{ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES, SIDES};
+use crate::words::{
+    ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUT_OF_RANGE, OUTSIDE, POWER_OFF, SEVERITIES,
+    SIDES,
+};
 
 /// The form of a text. What YAML reads as a number needs none.
 #[derive(Clone, Copy)]
@@ -102,6 +105,8 @@ fn of_field(key: Key) -> Demand {
         Key::As => Demand::Choice(NUMBER_FORMATS.map(|(word, _)| word).to_vec()),
         Key::In => Demand::Choice(kinds()),
         Key::Absent => Demand::Choice(ABSENT.map(|(word, _)| word).to_vec()),
+        Key::OutOfRange => Demand::Choice(OUT_OF_RANGE.map(|(word, _)| word).to_vec()),
+        Key::PowerOff => Demand::Choice(POWER_OFF.map(|(word, _)| word).to_vec()),
         Key::Outside => Demand::Choice(OUTSIDE.to_vec()),
         Key::Unit => Demand::Suggestion(Unit::ALL.map(|unit| unit.symbol.to_string()).to_vec()),
         Key::Type

@@ -27,10 +27,26 @@ pub struct SetPath {
     pub unit: Option<&'static str>,
     /// How the message travels that sets it.
     pub request: &'static Exchange,
+    /// What a device does with a value out of range, if the document says it.
+    pub out_of_range: Option<OutOfRange>,
+    /// Whether a device keeps the value without power, if the document says it.
+    pub is_kept: Option<bool>,
     /// The reply carries the value, too.
     pub(super) is_echoed: bool,
     pub(super) value: Value<&'static dyn SetNumber>,
     pub(super) others: &'static [(Place, u64)],
+}
+
+/// What a device does with a value that the document does not allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum OutOfRange {
+    /// It answers the request with an error.
+    Refused,
+    /// It goes on with the value before.
+    Ignored,
+    /// It takes the nearest value that the document allows.
+    Limited,
 }
 
 /// The value of a quantity in a frame.
@@ -108,13 +124,57 @@ impl SetPath {
         request: &'static Exchange,
         signal: &'static dyn SetNumber,
     ) -> Self {
-        Self { quantity, unit, request, is_echoed: false, value: Value::Number(signal), others: &[] }
+        Self::new(quantity, unit, request, Value::Number(signal))
     }
 
     /// Returns the path to a switch. Generated code calls it.
     #[doc(hidden)]
     pub const fn switch(quantity: Quantity, request: &'static Exchange, states: States) -> Self {
-        Self { quantity, unit: None, request, is_echoed: false, value: Value::Switch(states), others: &[] }
+        Self::new(quantity, None, request, Value::Switch(states))
+    }
+
+    const fn new(
+        quantity: Quantity,
+        unit: Option<&'static str>,
+        request: &'static Exchange,
+        value: Value<&'static dyn SetNumber>,
+    ) -> Self {
+        Self { quantity, unit, request, out_of_range: None, is_kept: None, is_echoed: false, value, others: &[] }
+    }
+
+    /// Says that a device refuses a request with a value out of range. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn refusing(self) -> Self {
+        Self { out_of_range: Some(OutOfRange::Refused), ..self }
+    }
+
+    /// Says that a device ignores a value out of range. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn ignoring(self) -> Self {
+        Self { out_of_range: Some(OutOfRange::Ignored), ..self }
+    }
+
+    /// Says that a device takes the nearest value inside its range. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn limiting(self) -> Self {
+        Self { out_of_range: Some(OutOfRange::Limited), ..self }
+    }
+
+    /// Says that a device keeps the value without power. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn kept(self) -> Self {
+        Self { is_kept: Some(true), ..self }
+    }
+
+    /// Says that a device loses the value without power. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn lost(self) -> Self {
+        Self { is_kept: Some(false), ..self }
     }
 
     /// Says that the reply carries the value, too. Generated code calls it.
@@ -151,6 +211,20 @@ impl SetPath {
             Value::Number(signal) => signal.set_in(&frame.bytes(), frame.length()),
             Value::Switch(states) => states.shown(frame),
         }
+    }
+
+    /// Returns the value nearest to another one that may be set, on the way from one that may.
+    pub(crate) fn limited(&self, value: i32, legal: i32) -> i32 {
+        let may_be_set = |value| self.write(value, &mut Payload::within_limits(self.message(), [0; 8])).is_ok();
+        if may_be_set(value) {
+            return value;
+        }
+        let (mut inside, mut outside) = (legal, value);
+        while inside.abs_diff(outside) > 1 {
+            let middle = i32::midpoint(inside, outside);
+            if may_be_set(middle) { inside = middle } else { outside = middle }
+        }
+        inside
     }
 
     /// Writes a value, and the bits that the message has elsewhere.

@@ -1,15 +1,16 @@
 //! A device that keeps what it is told.
 
 use super::{Answer, Device};
-use crate::{Addressed, Quantities, Quantity, Received};
+use crate::{Addressed, OutOfRange, Quantities, Quantity, Received};
 
-/// Builds what a device says to a request that sets no quantity.
+/// Builds what a device says to a request that sets no quantity, or that it does not obey.
 pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
 
 /// A device that keeps the quantities which requests set, at most `Q` of them, and echoes such requests. A
 /// function builds its other answers from what it keeps.
 ///
-/// It forgets all when it starts anew. It switches [`DELIVERING`](Quantity::DELIVERING) off when its watchdog runs
+/// When it starts anew, it forgets all but what the document says it keeps without power. It does with a value out of
+/// range what the document says, and then the function answers. It switches [`DELIVERING`](Quantity::DELIVERING) off when its watchdog runs
 /// out.
 ///
 /// Each quantity takes 24 bytes on a processor of 64 bits, and 12 on one of 32 bits.
@@ -49,14 +50,21 @@ impl<P: Addressed, const Q: usize> Keeper<P, Q> {
 
 impl<P: Quantities + Addressed<Target: PartialEq>, const Q: usize> Device<P> for Keeper<P, Q> {
     fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
-        let mut is_set = false;
+        let is_legal = request.encode().is_ok();
+        let (mut is_set, mut is_obeyed) = (false, true);
         for path in P::SETS {
-            if let Some(value) = request.setting(path.quantity) {
-                self.keep(path.quantity, value);
-                is_set = true;
+            let Some(value) = request.setting(path.quantity) else { continue };
+            is_set = true;
+            match (path.out_of_range.filter(|_| !is_legal), self.value(path.quantity)) {
+                (None, _) => self.keep(path.quantity, value),
+                (Some(OutOfRange::Limited), Some(kept)) => {
+                    self.keep(path.quantity, path.limited(value, kept));
+                    is_obeyed = false;
+                }
+                (Some(_), _) => is_obeyed = false,
             }
         }
-        if is_set { Answer::Values(*request.content()) } else { (self.tell)(request, self) }
+        if is_set && is_obeyed { Answer::Values(*request.content()) } else { (self.tell)(request, self) }
     }
 
     fn is_asked(&self, request: &Received<P>) -> bool {
@@ -68,6 +76,9 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const Q: usize> Device<P> for
     }
 
     fn power_on(&mut self, _now: u32) {
-        self.kept = [None; Q];
+        let is_kept = |(quantity, _): &(Quantity, i32)| {
+            P::SETS.iter().any(|path| path.quantity == *quantity && path.is_kept == Some(true))
+        };
+        self.kept = self.kept.map(|slot| slot.filter(is_kept));
     }
 }

@@ -2409,7 +2409,8 @@ impl Parted for ELabel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `41..=58.6005859375`. The limits depend on the device model.
+    /// `41..=58.6005859375`, refused out of range, lost without power. The limits depend on the device
+    /// model.
     pub value_v: f64,
 }
 
@@ -2478,7 +2479,7 @@ impl Layout for OutputVoltageSetting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultOutputVoltage {
     /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `48..=58.5`. The limits depend on the device model.
+    /// `48..=58.5`, refused out of range, kept without power. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -2545,7 +2546,7 @@ impl Layout for DefaultOutputVoltage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OvervoltageProtection {
     /// Overvoltage protection within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `56.5..=60.5`. The limits depend on the device model.
+    /// `56.5..=60.5`, refused out of range. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -2620,8 +2621,8 @@ impl Layout for OvervoltageProtection {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CurrentLimit {
     /// Limit of the output current or of its share of the full current in steps that depend on the device
-    /// model: bytes 4..7, `0..=1800`. The limits depend on the device model. These have none: `R4830G2`,
-    /// `R4850G2_20`, `R4850N2`, `R4875G1`.
+    /// model: bytes 4..7, `0..=1800`, refused out of range, lost without power. The limits depend on the
+    /// device model. These have none: `R4830G2`, `R4850G2_20`, `R4850N2`, `R4875G1`.
     pub value_raw: i32,
 }
 
@@ -2721,8 +2722,8 @@ impl Layout for CurrentLimit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DefaultCurrentLimit {
     /// Limit of the output current or of its share of the full current in steps that depend on the device
-    /// model: bytes 4..7, `0..=1800`. The limits depend on the device model. These have none: `R4830G2`,
-    /// `R4850G2_20`, `R4850N2`, `R4875G1`.
+    /// model: bytes 4..7, `0..=1800`, refused out of range, kept without power. The limits depend on the
+    /// device model. These have none: `R4830G2`, `R4850G2_20`, `R4850N2`, `R4875G1`.
     pub value_raw: i32,
 }
 
@@ -2814,9 +2815,9 @@ impl Layout for DefaultCurrentLimit {
 /// it from the data sheet of that model, and has not tried it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputCurrentLimit {
-    /// Whether the limit holds: byte 3.
+    /// Whether the limit holds: byte 3, kept without power.
     pub state: LimitState,
-    /// Input current at most in A: bytes 4..7, steps of 1/1024 A.
+    /// Input current at most in A: bytes 4..7, steps of 1/1024 A, kept without power.
     pub current_a: f64,
 }
 
@@ -2863,8 +2864,8 @@ impl Layout for InputCurrentLimit {
 /// minimum that changes stands in `fan_state`, and a PSU refuses less.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FanDuty {
-    /// Duty cycle of the fan in %: bytes 2..3, steps of 1/256 %, `1/256..=100`, raw 0 is `auto`. The limits
-    /// depend on the device model.
+    /// Duty cycle of the fan in %: bytes 2..3, steps of 1/256 %, `1/256..=100`, raw 0 is `auto`, refused
+    /// out of range, lost without power. The limits depend on the device model.
     pub value_percent: f64,
 }
 
@@ -3717,7 +3718,9 @@ impl Quantities for Message {
             &OutputVoltageSetting::SET,
             &OutputVoltageSetting::VALUE,
         )
-        .echoed(),
+        .echoed()
+        .refusing()
+        .lost(),
         SetPath::switch(
             Quantity::new("delivering"),
             &Standby::SET,

@@ -1727,7 +1727,7 @@ impl Layout for SetLed {
 /// - Reply `0296F000#0300000000000000`: `group` 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetGroup {
-    /// Number of the group: byte 0, `1..=62`. Section 3.4.
+    /// Number of the group: byte 0, `1..=62`, lost without power. Section 3.4.
     ///
     /// Lost at power-off; needed for modules without DIP switch and with the address mode `dip_switch`.
     ///
@@ -1943,14 +1943,14 @@ impl Layout for SetTotalOutput {
 /// Added in V1.06 and changed in V1.08.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetModuleOutput {
-    /// Output voltage in V: bytes 0..3, steps of 0.001 V, `50..=750`. The limits depend on the device
-    /// model. Section 3.3.
+    /// Output voltage in V: bytes 0..3, steps of 0.001 V, `50..=750`, ignored out of range, lost without
+    /// power. The limits depend on the device model. Section 3.3.
     ///
     /// Outside the limits of the model it is ignored, and the last one stays or, if there was none, the
     /// default of the model.
     pub voltage_v: f64,
-    /// Output current of one module in A: bytes 4..7, steps of 0.001 A, `0.1..=50`. The limits depend on
-    /// the device model. Section 3.3.
+    /// Output current of one module in A: bytes 4..7, steps of 0.001 A, `0.1..=50`, limited out of range,
+    /// lost without power. The limits depend on the device model. Section 3.3.
     ///
     /// Outside the limits of the model it is ignored as a voltage is; from V1.07 on too high a current is
     /// limited instead.
@@ -2372,16 +2372,20 @@ impl Quantities for Message {
     ];
     const SETS: &'static [SetPath] = &[
         SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetModuleOutput::SET, &SetModuleOutput::VOLTAGE)
-            .echoed(),
+            .echoed()
+            .ignoring()
+            .lost(),
         SetPath::number(Quantity::new("output_current"), Some("A"), &SetModuleOutput::SET, &SetModuleOutput::CURRENT)
-            .echoed(),
+            .echoed()
+            .limiting()
+            .lost(),
         SetPath::switch(
             Quantity::new("delivering"),
             &SwitchModules::SET,
             States { place: Place::byte(0), inactive: 0x01, active: 0x00 },
         )
         .echoed(),
-        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed(),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed().lost(),
     ];
 }
 

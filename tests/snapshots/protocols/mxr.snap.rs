@@ -1582,7 +1582,7 @@ impl Layout for RatedCurrent {
 /// 1 for one module, receiver, sender and group, with `0xF0` as controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetAltitude {
-    /// Value in m: bytes 4..7, `1000..=5000`.
+    /// Value in m: bytes 4..7, `1000..=5000`, kept without power.
     pub value_m: u32,
 }
 
@@ -1677,7 +1677,7 @@ impl Layout for SetOutputCurrent {
 /// reply", because 2.2.5 says 0; what a module of a group above 7 puts into a reply is not said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetGroup {
-    /// Number of the group: byte 7, bits 5..0, `0..=60`.
+    /// Number of the group: byte 7, bits 5..0, `0..=60`, kept without power.
     pub group: u8,
 }
 
@@ -1722,7 +1722,7 @@ impl Layout for SetGroup {
 /// 1 for one module, receiver, sender and group, with `0xF0` as controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetAddressMode {
-    /// Origin of the module address: bytes 4..7.
+    /// Origin of the module address: bytes 4..7, kept without power.
     pub value: AddressMode,
 }
 
@@ -2882,7 +2882,7 @@ impl Quantities for Message {
             States { place: Place::bytes(4, 7), inactive: 0x0001_0000, active: 0x0000_0000 },
         )
         .echoed(),
-        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed(),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed().kept(),
     ];
 }
 

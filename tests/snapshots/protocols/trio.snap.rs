@@ -866,7 +866,7 @@ impl Layout for ReplacementAdvice {
 /// above those of 24 V, so the range can only hold for a known model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    /// Who controls the module: byte 0.
+    /// Who controls the module: byte 0, kept without power.
     pub mode: ControlMode,
     /// Whether the module is switched on: byte 1.
     ///

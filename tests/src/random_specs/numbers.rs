@@ -85,6 +85,12 @@ impl Draft {
             field.put("values", values);
             self.values_on_some(field);
         }
+        if has_range && self.chance(20) {
+            field.put("out_of_range", self.one(&["refused", "ignored", "limited"]));
+        }
+        if self.chance(15) {
+            field.put("power_off", self.one(&["kept", "lost"]));
+        }
         if self.chance(20) {
             field.put("default", grid.physical(self.one(&[first, last])));
         }

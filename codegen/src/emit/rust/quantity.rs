@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::plan::quantity::{Quantities, Read, Set, States, Value, ValueKind};
+use crate::model::OutOfRange;
 
 /// Emits where quantities are read and set.
 pub fn quantities(Quantities { reads, sets }: &Quantities) -> TokenStream {
@@ -23,12 +24,18 @@ fn read(Read { value, frames, request }: &Read) -> TokenStream {
     quote!(#path #asked)
 }
 
-fn set(Set { value, request, is_echoed, others }: &Set) -> TokenStream {
+fn set(Set { value, request, is_echoed, conduct, others }: &Set) -> TokenStream {
     let path = path(&quote!(SetPath), value, request);
     let rows = others.iter().map(|(place, bits)| quote!((#place, #bits)));
     let with = (!others.is_empty()).then(|| quote!(.with(&[#(#rows),*])));
     let echoed = is_echoed.then(|| quote!(.echoed()));
-    quote!(#path #echoed #with)
+    let limiting = conduct.out_of_range.map(|known| match known {
+        OutOfRange::Refused => quote!(.refusing()),
+        OutOfRange::Ignored => quote!(.ignoring()),
+        OutOfRange::Limited => quote!(.limiting()),
+    });
+    let keeping = conduct.keeps.map(|keeps| if keeps { quote!(.kept()) } else { quote!(.lost()) });
+    quote!(#path #echoed #with #limiting #keeping)
 }
 
 fn path(table: &TokenStream, Value { name, unit, kind }: &Value, frames: &TokenStream) -> TokenStream {

@@ -197,6 +197,12 @@ keys! {
     /// Value that the device starts with, a name or a number without its unit: `60` or `automatic`;
     /// none if absent. It is sent if the caller leaves the signal out.
     Default "default": default: Option<String>, inherited;
+    /// What a device does with a value outside the range: `refused`, `ignored` or `limited`; not said if absent. A
+    /// refused request is answered by an error. An ignored value leaves the one before it in effect, and the nearest
+    /// one inside is taken for a limited one.
+    OutOfRange "out_of_range": out_of_range: Option<String>, inherited;
+    /// What becomes of a value without power: `kept` or `lost`; not said if absent.
+    PowerOff "power_off": power_off: Option<String>, inherited;
     /// What to do with a number that an address type does not name: with `refused` it is not
     /// such an address. If absent, it is accepted with the note `address`.
     Outside "outside": outside: Option<String>, inherited;

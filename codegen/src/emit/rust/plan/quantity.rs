@@ -7,7 +7,7 @@ use super::literal::hexadecimal;
 use super::message::Message;
 use super::naming::{camel_case, ident};
 use super::place::Written;
-use crate::model::{ExchangeId, FrameLayout, Kind, MessageId, Protocol, SignalPath, Table};
+use crate::model::{Conduct, ExchangeId, FrameLayout, Kind, MessageId, Protocol, SignalPath, Table};
 
 /// Where quantities are read and set.
 pub struct Quantities {
@@ -35,6 +35,8 @@ pub struct Set {
     pub request: TokenStream,
     /// The reply carries it, too.
     pub is_echoed: bool,
+    /// What a device does with it.
+    pub conduct: Conduct,
     /// Places that the message has elsewhere, with their bits.
     pub others: Vec<(Written, TokenStream)>,
 }
@@ -106,6 +108,7 @@ impl Planner<'_> {
             value: self.value(name, path),
             request: self.exchange(path, request.exchange),
             is_echoed: self.protocol.frames_with(path).any(is_echo),
+            conduct: message[path.signal].conduct,
             others: others.collect(),
         })
     }

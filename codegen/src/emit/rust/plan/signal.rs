@@ -14,7 +14,8 @@ use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
 use crate::model::{
-    self, Array, Lacking, LongMessage, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table,
+    self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, OutOfRange, Protocol, Range, SignalId,
+    Table,
 };
 use crate::syntax::tree::Path;
 
@@ -270,7 +271,7 @@ impl Context<'_> {
         let (place, optional) = (Some(places(message, signal)), optional(content, signal));
         let only = only_on(self.protocol, signal);
         let facts = [place, varying(message, signal), optional, coding.step.clone(), range, specials(signal), only];
-        let facts: Vec<_> = facts.into_iter().flatten().collect();
+        let facts: Vec<_> = facts.into_iter().flatten().chain(conduct(signal)).collect();
         let models = models(self.protocol, signal);
         format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
     }
@@ -357,6 +358,19 @@ fn optional(content: &Content, signal: &model::Signal) -> Option<String> {
 fn least(content: &Content, signal: &model::Signal) -> String {
     let lengths = content.lengths.iter().filter(|length| **length >= signal.reach());
     lengths.map(usize::to_string).collect::<Vec<_>>().join(" or ")
+}
+
+/// Says what a device does with the value.
+fn conduct(signal: &model::Signal) -> impl Iterator<Item = String> {
+    let Conduct { out_of_range, keeps, .. } = signal.conduct;
+    let limiting = out_of_range.map(|known| match known {
+        OutOfRange::Refused => "refused",
+        OutOfRange::Ignored => "ignored",
+        OutOfRange::Limited => "limited",
+    });
+    let keeping = keeps.map(|keeps| if keeps { "kept" } else { "lost" });
+    let limiting = limiting.map(|word| format!("{word} out of range"));
+    limiting.into_iter().chain(keeping.map(|word| format!("{word} without power")))
 }
 
 /// Names the only device models that have a signal.
