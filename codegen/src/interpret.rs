@@ -278,3 +278,12 @@ impl std::error::Error for Refusal {}
 fn hexadecimal(value: u32) -> String {
     format!("0x{value:02X}")
 }
+
+/// Shows inclusive ranges of raw values of a field of the identifier.
+fn hexadecimal_ranges(ranges: &[(u32, u32)]) -> String {
+    let shown = |(first, last): &(u32, u32)| {
+        let [first, last] = [*first, *last].map(hexadecimal);
+        if first == last { first } else { format!("{first}..{last}") }
+    };
+    ranges.iter().map(shown).collect::<Vec<_>>().join(", ")
+}

@@ -3,10 +3,10 @@
 use std::cmp::Reverse;
 
 use super::notes::signal_note;
-use super::{Decoded, Form, Frame, Problem, Reading, Unrecognised, hexadecimal};
+use super::{Decoded, Form, Frame, Problem, Reading, Unrecognised, hexadecimal, hexadecimal_ranges};
 use crate::model::{
-    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id, Message, ModelId,
-    Protocol, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Table, Travel, Who,
+    AddressPattern, AddressType, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id,
+    Message, ModelId, Protocol, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Table, Travel, Way, Who,
 };
 
 /// Decodes a frame that goes to or comes from a device model.
@@ -140,12 +140,38 @@ impl<'a> Decoder<'a> {
             (true, false) => Ok(requests),
             (false, true) => Ok(replies),
             (true, true) => Ok(either),
-            (false, false) => {
-                let either = self.protocol.sides.either();
-                let text = format!("the addresses do not show whether it goes to {either}");
-                Err(self.unrecognised(Problem::Identifier, text, true, None))
-            }
+            (false, false) => Err(self.unrecognised(Problem::Identifier, self.undirected(), true, None)),
         }
+    }
+
+    /// Says why the identifier shows no direction: the first field whose value no addressing mode has, and what they have.
+    fn undirected(&self) -> String {
+        let strange = self.protocol.identifier.fields.ids().find_map(|field| {
+            let known = self.documented_values(field)?;
+            let found = self.field(field);
+            let is_strange = !known.iter().any(|(first, last)| (*first..=*last).contains(&found));
+            is_strange.then_some((&self.protocol[field].name, found, known))
+        });
+        let Some((name, found, known)) = strange else {
+            return format!("the addresses do not show whether it goes to {}", self.protocol.sides.either());
+        };
+        format!("no addressing mode has {name} {}; they have {}", hexadecimal(found), hexadecimal_ranges(&known))
+    }
+
+    /// Returns the raw values of a field that the addressing modes name, if each of them names some.
+    fn documented_values(&self, id: FieldId) -> Option<Vec<(u32, u32)>> {
+        let (protocol, field) = (self.protocol, &self.protocol[id]);
+        let values = Way::all(&protocol.modes).map(|(_, pattern)| {
+            let address = pattern.addresses.iter().find(|address| address.field == id);
+            let known = address.map(|address| &protocol[address.address_type]).filter(|known| known.strict);
+            let constant = field.get(pattern.value);
+            let is_constant = pattern.mask & field.mask() == field.mask();
+            known.map(AddressType::raw_ranges).or_else(|| is_constant.then(|| vec![(constant, constant)]))
+        });
+        let mut known = values.collect::<Option<Vec<_>>>()?.concat();
+        known.sort_unstable();
+        known.dedup();
+        Some(known)
     }
 
     fn passes(&self, test: &FieldTest) -> bool {

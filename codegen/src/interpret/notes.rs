@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use super::decode::{Addressing, Candidate, Decoder, Fit};
-use super::{Note, Reading, Value, hexadecimal};
+use super::{Note, Reading, Value, hexadecimal, hexadecimal_ranges};
 use crate::encoding::Words;
 use crate::hex;
 use crate::model::{
@@ -100,12 +100,8 @@ impl<'a> Decoder<'a> {
             let address_type = &self.protocol[address.address_type];
             let raw = self.field(address.field);
             if !address_type.documents(raw) {
-                let shown = |(first, last): &(u32, u32)| {
-                    let [first, last] = [*first, *last].map(hexadecimal);
-                    if first == last { first } else { format!("{first}..{last}") }
-                };
                 let field = &self.protocol[address.field].name;
-                let ranges = address_type.raw_ranges().iter().map(shown).collect::<Vec<_>>().join(", ");
+                let ranges = hexadecimal_ranges(&address_type.raw_ranges());
                 let text = format!("{field} {} is outside {ranges} of `{}`", hexadecimal(raw), address_type.name);
                 notes.push(Note { rule: NoteRule::Address, text });
             }
