@@ -74,6 +74,14 @@ pub enum Error {
         /// The greatest number of elements.
         maximum: usize,
     },
+    /// A frame to a module would carry another part of a long message than before. Only the whole message makes
+    /// such frames, since its limits hold for all parts together.
+    Part {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal: the number of the part, or its data.
+        signal: &'static str,
+    },
     /// The buffer has too few bytes for a long message.
     Room {
         /// Name of the message.
@@ -212,6 +220,12 @@ impl fmt::Display for Error {
                 write!(
                     formatter,
                     "`{signal}` of `{message}` has {count} elements, but its limits are {minimum} and {maximum}"
+                )
+            }
+            Self::Part { message, signal } => {
+                write!(
+                    formatter,
+                    "`{signal}` of `{message}` is that of another part, which only the whole message makes"
                 )
             }
             Self::Room { message, length, room } => {

@@ -215,6 +215,20 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if R::SIGNED { self.place.get_signed(&data) as u64 } else { self.place.get(&data) }
     }
 
+    /// Writes the raw value of a part of a long message. Generated code calls it.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`put`](Self::put). If `payload` keeps to limits, it also refuses any other value than the one that
+    /// is there. The limits of a long message hold for all of its parts together.
+    #[doc(hidden)]
+    pub fn keep<E: Refusing>(&self, raw: R, payload: &mut Payload<E>) -> Result<(), E> {
+        if payload.keeps_limits() && self.bits(*payload.data()) != raw.to_bits() {
+            return Err(payload.refusal(move |message| Error::Part { message, signal: self.name }));
+        }
+        self.put(raw, payload)
+    }
+
     /// Returns data with the low bits of a raw value in place.
     #[inline(always)]
     fn with(&self, mut data: Data, bits: u64) -> Data {

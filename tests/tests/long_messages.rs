@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use canspec_codegen::interpret::{self, Assembly, Form, decode};
 use canspec_codegen::model::{LongExample, LongMessage, Protocol, Signal, TextForm};
 use canspec_runtime::parts::{Assembler, Outcome, Parted as _};
-use canspec_runtime::{Elements, Frame, Kind, LongLayout, Text};
+use canspec_runtime::{Bytes, Elements, Error, Frame, Kind, LongLayout, Text};
 use canspec_tests::features_long_fields::Pack;
 use canspec_tests::features_parts_by_model::{self as by_model, Model};
 use canspec_tests::features_parts_of_controller::{self as labels, Label};
@@ -212,6 +212,25 @@ fn no_part_of_values_outside_their_limits_is_built_for_a_module() {
         assert!(program.frames(&reply).is_ok() && program.frames_for(ovens::Model::Ov1, &reply).is_ok(), "{last}");
     }
     assert!(program(210.0).set(Target::Oven(10)).is_err(), "there are nine ovens");
+}
+
+#[test]
+fn a_part_to_a_module_is_built_again_only_as_it_was() {
+    let frames: Vec<_> = program(210.0).set(Target::Oven(3)).expect("it fits").collect();
+    let received = ovens::Message::decode(&frames[0]).expect("one of its frames");
+    assert_eq!(received.encode(), Ok(frames[0]));
+    let ovens::Message::ProgramPart(part) = *received.content() else { panic!("it carries a part") };
+    // Byte 0 is the time: 255 min, where 60 min are the most.
+    let long = ProgramPart { data: Bytes::new([0xFF, 0x07, 0x08, 0x07, 0xD0, 0x08]), ..part };
+    let later = ProgramPart { part: 2, ..part };
+    for (other, signal) in [(long, "data"), (later, "part")] {
+        let built = received.with_content(ovens::Message::ProgramPart(other)).encode();
+        assert_eq!(built, Err(Error::Part { message: "program", signal }));
+        // A module says what it has.
+        let reply = Frame::new_raw(0x0B3, false, frames[0].bytes(), 8);
+        let reply = ovens::Message::decode(&reply).expect("it confirms the frame");
+        assert!(reply.with_content(ovens::Message::ProgramPart(other)).encode().is_ok());
+    }
 }
 
 #[test]

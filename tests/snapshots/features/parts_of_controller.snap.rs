@@ -194,9 +194,9 @@ impl Layout for LabelPart {
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
-        Self::PART.put(self.part, payload)?;
+        Self::PART.keep(self.part, payload)?;
         Self::COUNTER.put(self.counter, payload)?;
-        Self::DATA.put(self.data, payload)
+        Self::DATA.keep(self.data, payload)
     }
 }
 

@@ -320,8 +320,8 @@ impl Layout for ProgramPart {
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
-        Self::PART.put(self.part, payload)?;
-        Self::DATA.put(self.data, payload)
+        Self::PART.keep(self.part, payload)?;
+        Self::DATA.keep(self.data, payload)
     }
 }
 

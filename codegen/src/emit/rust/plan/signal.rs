@@ -14,8 +14,8 @@ use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
 use crate::model::{
-    self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, OutOfRange, Protocol, Range, SignalId,
-    Table,
+    self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, OutOfRange, Parts, Protocol, Range,
+    SignalId, Table,
 };
 use crate::syntax::tree::Path;
 
@@ -147,15 +147,29 @@ impl Context<'_> {
         let of_array = |array: &Array, fields: &mut Pool| fields.take(self.name(message, array.elements[0]), "_");
         let arrays = message.arrays.map(|array| of_array(array, &mut fields));
         let content = Content::of_frames(message);
+        let kept = self.kept(message);
         let signals = message.signals.entries().map(|(signal, known)| {
             let field = match known.element {
                 Some(element) => arrays[element.array].clone(),
                 None => fields.take(self.name(message, signal), "_"),
             };
             let words = self.types.words(self.types.packed[id][signal].as_ref());
-            self.named(&content, known, (constants[signal].clone(), field), &words, members)
+            let mut planned = self.named(&content, known, (constants[signal].clone(), field), &words, members);
+            if kept.contains(&signal) {
+                planned.member.put = format_ident!("keep");
+            }
+            planned
         });
         signals.collect()
+    }
+
+    /// Returns the signals of a part that a module can get. Limits hold for the whole message, so nobody changes a part.
+    fn kept(&self, message: &Message) -> Vec<SignalId> {
+        let parts = message.long.and_then(|long| Some((long, self.protocol[long].parts()?)));
+        let Some((long, Parts { number, data, .. })) = parts else { return Vec::new() };
+        let mut frames = self.protocol.frames_of(message);
+        let is_sent = frames.any(|frame| frame.is_to_module() && self.protocol.part_of(frame) == Some(long));
+        if is_sent { vec![*number, *data] } else { Vec::new() }
     }
 
     /// Plans the signals of what several frames carry together. The elements of an array are one.
