@@ -82,14 +82,15 @@ impl Resolver<'_> {
             let lengths = known.map(|long| (0..=8).filter(|bytes| long.has_length(usize::from(*bytes))).collect());
             return Carried { leaves, long, lengths: lengths.unwrap_or_default() };
         }
-        let lengths = self.lengths(&at, written, length);
-        let (leaves, long) = match &message.parts {
-            Some(parts) => {
-                self.refuse_constants(&contents);
-                self.long_message(id, path, (parts, contents), head)
-            }
-            None => (contents, None),
+        let Some(parts) = &message.parts else {
+            return Carried { leaves: contents, long: None, lengths: self.lengths(&at, written, length) };
         };
+        self.refuse_constants(&contents);
+        // Where the first part announces a length, those of the message are meant.
+        let (of_whole, of_frames) = if parts.length.is_some() { (written, &[][..]) } else { (&[][..], written) };
+        let whole = self.long_lengths(&at, of_whole);
+        let lengths = self.lengths(&at, of_frames, length);
+        let (leaves, long) = self.long_message(id, path, (parts, whole), contents, head);
         Carried { leaves, long, lengths }
     }
 
@@ -131,7 +132,8 @@ impl Resolver<'_> {
         &mut self,
         message: MessageId,
         path: &Path,
-        (parts, whole): (&ast::Parts, Leaves),
+        (parts, lengths): (&ast::Parts, Vec<u16>),
+        whole: Leaves,
         head: Head,
     ) -> (Leaves, Option<LongMessageId>) {
         let mut frame = self.part_leaves(&path.key("parts"), parts, head.doc, head.name);
@@ -140,11 +142,15 @@ impl Resolver<'_> {
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
         let content = content(head, signals, arrays);
+        let at = path.key("length");
         let path = path.key("parts");
         let carrier = self.parts(&path, parts, &frame, head).map(Carrier::Parts);
-        let long =
-            carrier.map(|carrier| LongMessage { message, content, carrier, lengths: Vec::new(), frames: Vec::new() });
-        let long = long.filter(|long| self.check_long(&rules::PARTS, &path, long, frame.given_up.is_empty()).is_some());
+        let long = carrier.map(|carrier| LongMessage { message, content, carrier, lengths, frames: Vec::new() });
+        let is_sound = frame.given_up.is_empty();
+        let long = long.filter(|long| {
+            self.check_long(&rules::PARTS, &path, long, is_sound).is_some()
+                && self.check_cuts(&rules::PARTS, &at, long).is_some()
+        });
         let id = long.map(|long| {
             self.check_announced(&path, &long);
             let numbers = numbers(&long);
@@ -231,17 +237,22 @@ impl Resolver<'_> {
             return None;
         }
         let at = path.key("length");
-        if let (Some(_), Some(array)) = (long.lengths.first(), long.varying()) {
-            let text = format!("the length follows from the elements of `{}`", array.name);
-            self.error_with_help(&rules::TRANSPORT, at.at_key(), text, "take `length` out");
-            return None;
-        }
         let is_plain = long.shortest() <= ONE_FRAME && self.tables.transports[transport].standard.has_plain_frames();
         if let Some((signal, _)) = long.open_text().filter(|_| is_plain) {
             let text = format!("a message of up to 8 bytes is one frame, in which `{}` cannot be open", signal.name);
             let help =
                 "let the length begin at 9 or more, or make an array of it: `{bytes: 0, repeat: 1..400, as: text}`";
             self.error_with_help(&rules::TRANSPORT, at.at_value(), text, help);
+            return None;
+        }
+        self.check_cuts(&rules::TRANSPORT, &at, long)
+    }
+
+    /// Tests that no length of a message cuts a field, and that its fields do not say how long it is.
+    fn check_cuts(&mut self, rule: &'static Rule, at: &Path, long: &LongMessage) -> Option<()> {
+        if let (Some(_), Some(array)) = (long.lengths.first(), long.varying()) {
+            let text = format!("the length follows from the elements of `{}`", array.name);
+            self.error_with_help(rule, at.at_key(), text, "take `length` out");
             return None;
         }
         let cut = long.lengths.iter().find_map(|length| {
@@ -255,7 +266,7 @@ impl Resolver<'_> {
         let Some((length, signal)) = cut.or_else(beyond) else { return Some(()) };
         let text = format!("`{}` does not end within {length} bytes", signal.name);
         let help = "correct the lengths or the places; a field may lie behind a length, but not across it";
-        self.error_with_help(&rules::TRANSPORT, at.at_key(), text, help);
+        self.error_with_help(rule, at.at_key(), text, help);
         None
     }
 

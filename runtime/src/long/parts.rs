@@ -21,8 +21,8 @@ mod sender;
 
 use core::fmt;
 
-use super::LongLayout;
 use super::buffer::Buffer;
+use super::{LongLayout, has_size};
 use crate::plumbing::Continuation;
 use crate::{Exchange, Frame, IdentifierFields, Kind, Layout, Place, Protocol};
 
@@ -52,6 +52,8 @@ pub trait Parted: LongLayout {
     /// Where the first part says how many data bytes there are, if it does. These are whole bytes at
     /// the front of its data, and do not count.
     const LENGTH: Option<Place> = None;
+    /// The numbers of data bytes that the message can have, if the spec lists them.
+    const SIZES: &'static [usize] = &[];
     /// How many milliseconds of silence behind a part end a message, if it ends so.
     const SILENCE: Option<u32> = None;
     /// Number of the first part, if it is the same on every device model.
@@ -251,6 +253,11 @@ fn announced<L: Parted>(buffer: &Buffer<L::Memory>) -> Option<usize> {
     let (place, mut frame) = (L::LENGTH?, [0; 8]);
     L::DATA.put(&mut frame, word(buffer.get(0)?.iter().copied()));
     Some(usize::try_from(place.get(&frame)).unwrap_or(usize::MAX))
+}
+
+/// Tests whether a message can have the number of data bytes that its first part announces.
+fn has_length<L: Parted>(length: usize) -> bool {
+    if L::SIZES.is_empty() { has_size::<L>(0, length) } else { L::SIZES.contains(&length) }
 }
 
 /// Returns the data up to the last part that came, without a length before them.

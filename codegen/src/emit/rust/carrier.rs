@@ -25,6 +25,8 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const LENGTH: Option<Place> = Some(#place);
         )
     });
+    let sizes = carrier.sizes.iter().map(|size| Literal::u16_unsuffixed(*size));
+    let sizes = (sizes.len() > 0).then(|| quote!(const SIZES: &'static [usize] = &[#(#sizes),*];));
     let silence = carrier.silence.iter().map(|time| {
         let time = Literal::u32_unsuffixed(*time);
         quote!(
@@ -54,6 +56,7 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const DATA: Place = #part::#data.place();
             #(#counter)*
             #(#length)*
+            #sizes
             #(#silence)*
             const FIRST: Option<u16> = #first;
             #of_models

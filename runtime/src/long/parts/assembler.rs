@@ -3,10 +3,9 @@
 use core::fmt;
 
 use super::peers::Peers;
-use super::{Incomplete, Outcome, Parted, Said, Whole, announced, data, first, parts_of, size};
+use super::{Incomplete, Outcome, Parted, Said, Whole, announced, data, first, has_length, parts_of, size};
 use crate::clock::has_lasted;
 use crate::long::buffer::Buffer;
-use crate::long::has_size;
 use crate::{Frame, Kind, Received};
 
 /// Puts the parts of the message `L` together, from up to `N` nodes at a time.
@@ -219,7 +218,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         let expected = expected.or_else(|| self::expected::<L>(&buffer, count)).unwrap_or(buffer.end());
         let (data, announced) = (data::<L>(&buffer), announced::<L>(&buffer));
         let data = data.get(..announced.unwrap_or_else(|| bytes_with::<L>(count))).unwrap_or(data);
-        let is_right = announced.is_none_or(|length| has_size::<L>(0, length));
+        let is_right = announced.is_none_or(has_length::<L>);
         let values = if is_right && buffer.missing(expected).next().is_none() { L::decode(data) } else { None };
         match values {
             Some(values) => {

@@ -108,8 +108,12 @@ impl Draft {
             parts.put("silence", self.times[0].clone());
         }
         message.put("parts", parts);
-        if let Length::Open(range) = length {
-            message.put("length", range);
+        match length {
+            Length::Open(range) => message.put("length", range),
+            Length::Fixed(lengths) if says_length && self.chance(40) => {
+                message.put("length", list(lengths.map(|length| length.to_string())));
+            }
+            Length::Fixed(_) | Length::Elements => {}
         }
         message.put("fields", fields);
     }

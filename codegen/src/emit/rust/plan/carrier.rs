@@ -27,6 +27,8 @@ pub struct Carrier {
     pub data: Ident,
     /// Where the first part says how many data bytes there are.
     pub length: Option<TokenStream>,
+    /// The numbers of data bytes that it can have, if the spec lists them.
+    pub sizes: Vec<u16>,
     /// How many bytes of memory the parts need: their data, and a bit for each.
     pub memory: usize,
     /// How many milliseconds of silence end a message, if it ends so.
@@ -89,6 +91,7 @@ impl Planner<'_> {
             counter: rule.counter.map(|counter| frame.signals[counter].constant.clone()),
             data: frame.signals[rule.data].constant.clone(),
             length: rule.length.map(|length| Written::new(length.place).to_token_stream()),
+            sizes: long.lengths.clone(),
             silence: self.protocol.silence(long).map(milliseconds),
             memory: count * usize::from(rule.size) + count.div_ceil(8),
             first: rule.first,
