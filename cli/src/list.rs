@@ -287,7 +287,7 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
         None => items.extend(description(protocol, signal)),
     }
     items.extend(only(&protocol.models, &signal.models));
-    let special = |value: &NamedValue| format!("{} = {}{}", value.raw, value.name, of_some(protocol, &value.models));
+    let special = |value: &NamedValue| format!("{} = {}", value.raw, value.text(&protocol.models));
     items.extend(signal.specials.iter().map(special));
     items
 }

@@ -11,7 +11,7 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use crate::syntax::ast::{ByModel, Field, Map, Means, NamedValue, Names, SignalPath, Spec, States, ValueOfModels};
+use crate::syntax::ast::{ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, SignalPath, Spec, States};
 
 /// Returns the schema as indented text that ends in a line feed.
 pub fn schema() -> String {
@@ -114,8 +114,8 @@ impl JsonSchema for NamedValue {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let (name, of_models) = (generator.subschema_for::<String>(), generator.subschema_for::<ValueOfModels>());
-        json_schema!({ "anyOf": [name, of_models] })
+        let (name, described) = (generator.subschema_for::<String>(), generator.subschema_for::<DescribedValue>());
+        json_schema!({ "anyOf": [name, described] })
     }
 }
 

@@ -139,7 +139,12 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Unit => &["V"],
         Key::Range => &["1..15"],
         // The second one names the addresses of the controllers.
-        Key::Values => &["{5: five, 6: six}", "{0xF0: five, 0xF1: six}", "{5: {name: five, models: [M1]}}"],
+        Key::Values => &[
+            "{5: five, 6: six}",
+            "{0xF0: five, 0xF1: six}",
+            "{5: {name: five, models: [M1]}}",
+            "{5: {name: five, title: The fifth}}",
+        ],
         Key::Fields => &["{inner: {bits: 0}}", "{letter: {bytes: 4, as: text}, year: {bytes: 5}, day: {bytes: 6}}"],
         Key::Status => &["{late: {bit: 2}}"],
         Key::Format => &["\"{inner}\"", "\"{letter}/{number}\"", "\"{letter}.{year:2}.{day}\""],

@@ -1,7 +1,7 @@
 //! Values that have names and are no quantities.
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
-use crate::model::{DeviceModel, Enumeration, Misfit, ModelId, NamedValue, NoteRule, Signal, Table, only};
+use crate::model::{DeviceModel, Enumeration, Misfit, ModelId, NamedValue, NoteRule, Signal, Table};
 use crate::number::Rational;
 
 pub struct Named<'a> {
@@ -39,9 +39,9 @@ impl Room for Named<'_> {
     fn description(&self) -> Vec<String> {
         let digits = usize::from(self.known.width.div_ceil(4));
         let is_small = self.known.values.iter().all(|value| value.raw < 10);
-        let shown = |NamedValue { raw, name, models, .. }: &NamedValue| {
-            let only = only(self.models, models).map_or(String::new(), |only| format!(" ({only})"));
-            if is_small { format!("{raw} = {name}{only}") } else { format!("0x{raw:0digits$X} = {name}{only}") }
+        let shown = |value: &NamedValue| {
+            let (raw, text) = (value.raw, value.text(self.models));
+            if is_small { format!("{raw} = {text}") } else { format!("0x{raw:0digits$X} = {text}") }
         };
         self.known.values.iter().map(shown).collect()
     }

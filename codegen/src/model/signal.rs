@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Element, Encoding, Kind, ModelId, Unit, place};
+use crate::model::{DeviceModel, Doc, Element, Encoding, Kind, ModelId, Table, Unit, only, place};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
@@ -45,6 +45,8 @@ pub struct NamedValue {
     pub raw: i128,
     /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What it is, in a few words.
+    pub title: Option<Text>,
     /// The only device models that have it; empty if every model has it.
     pub models: Vec<ModelId>,
     /// Place of that list in the spec.
@@ -52,6 +54,13 @@ pub struct NamedValue {
 }
 
 impl NamedValue {
+    /// Returns its name for people, with its title, and the device models if only some have it.
+    pub fn text(&self, models: &Table<ModelId, DeviceModel>) -> String {
+        let title = self.title.as_ref().map(|title| title.for_people().to_owned());
+        let remarks: Vec<_> = title.into_iter().chain(only(models, &self.models)).collect();
+        if remarks.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, remarks.join(", ")) }
+    }
+
     /// Tests whether a device model has the value.
     pub fn is_of(&self, model: ModelId) -> bool {
         self.models.is_empty() || self.models.contains(&model)

@@ -39,7 +39,7 @@ impl Resolver<'_> {
             return None;
         }
         let (name, models, models_path) = (NOT_AVAILABLE.to_owned(), Vec::new(), Path::default());
-        Some(NamedValue { raw, name, models, models_path })
+        Some(NamedValue { raw, name, title: None, models, models_path })
     }
 
     /// Reads what a field or its type says, which must make a difference.

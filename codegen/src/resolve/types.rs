@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::Resolver;
-use super::texts::remarks;
+use super::texts::{remarks, text};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
 use crate::number::Rational;
@@ -235,7 +235,7 @@ impl Resolver<'_> {
         let mut named: Vec<NamedValue> = Vec::new();
         let mut places = Vec::new();
         let (mut of_raw, mut of_name) = (HashMap::new(), HashMap::new());
-        for (raw, ast::NamedValue { name, models }) in values {
+        for (raw, ast::NamedValue { name, title, models }) in values {
             let at = path.key(raw);
             self.check_value_name(&at, name);
             self.check_not_empty(&at, &["models"]);
@@ -257,7 +257,8 @@ impl Resolver<'_> {
             of_raw.insert(number, named.len());
             of_name.insert(name, named.len());
             places.push(at);
-            named.push(NamedValue { raw: number, name: name.clone(), models, models_path });
+            let title = text(title.as_ref());
+            named.push(NamedValue { raw: number, name: name.clone(), title, models, models_path });
         }
         named
     }

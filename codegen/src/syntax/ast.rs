@@ -213,23 +213,28 @@ pub struct StatusBit {
     pub erratum: Names,
 }
 
-/// The name of a raw value. It is a map if only some device models have the value.
+/// The name of a raw value. It is a map if more is said of it.
 #[derive(Clone, Debug)]
 pub struct NamedValue {
     /// The name.
     pub name: String,
+    /// What the value is, in a few words.
+    pub title: Option<String>,
     /// The only device models that have the value; empty if every model has it.
     pub models: Vec<String>,
 }
 
-/// A named raw value that only some device models have.
+/// A named raw value with a title, or of some device models.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct ValueOfModels {
+pub struct DescribedValue {
     /// Name of the raw value: `boost`.
     pub name: String,
-    /// List of the only device models that have the value: `[SM_750]`.
+    /// What the value is, in a few words without a full stop: `Charges faster`.
+    pub title: Option<String>,
+    /// List of the only device models that have the value: `[SM_750]`; every model has it if absent.
+    #[serde(default)]
     pub models: Vec<String>,
 }
 

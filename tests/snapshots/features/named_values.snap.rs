@@ -199,7 +199,7 @@ impl Word for Power {
 pub enum SwitchLamp {
     /// 2570: `dark`.
     Dark,
-    /// 61455: `bright`.
+    /// As bright as it gets: 61455, `bright`.
     Bright,
     /// A value without a name; it is sent as it is.
     Unknown(u16),

@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{ByModel, Field, IdentifierEntry, Map, Means, NamedValue, Names, SignalPath, States, ValueOfModels};
+use super::{ByModel, DescribedValue, Field, IdentifierEntry, Map, Means, NamedValue, Names, SignalPath, States};
 
 impl<'de> Deserialize<'de> for Names {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -60,16 +60,17 @@ impl<'de> Deserialize<'de> for NamedValue {
             type Value = NamedValue;
 
             fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a name, or a map with `name` and `models`")
+                formatter.write_str("a name, or a map with `name`, `title` and `models`")
             }
 
             fn visit_str<E>(self, name: &str) -> Result<NamedValue, E> {
-                Ok(NamedValue { name: name.to_owned(), models: Vec::new() })
+                Ok(NamedValue { name: name.to_owned(), title: None, models: Vec::new() })
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<NamedValue, A::Error> {
-                let ValueOfModels { name, models } = ValueOfModels::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(NamedValue { name, models })
+                let value = DescribedValue::deserialize(MapAccessDeserializer::new(map))?;
+                let DescribedValue { name, title, models } = value;
+                Ok(NamedValue { name, title, models })
             }
         }
         deserializer.deserialize_any(ValueVisitor)

@@ -300,11 +300,10 @@ impl Special {
         special: &NamedValue,
     ) -> Self {
         let (field, only) = (message.field_name(known), super::word::only(protocol, &special.models));
-        Self {
-            constant,
-            comment: Comment::line(format!("The value of `{field}` that stands for `{}`{only}.", special.name)),
-            value: coding.value_of(known, special.raw),
-        }
+        let title = special.title.iter().map(|title| doc::sentence_of(&title.in_rust_doc()));
+        let sentence = format!("The value of `{field}` that stands for `{}`{only}.", special.name);
+        let sentences: Vec<_> = std::iter::once(sentence).chain(title).collect();
+        Self { constant, comment: Comment::line(sentences.join(" ")), value: coding.value_of(known, special.raw) }
     }
 }
 

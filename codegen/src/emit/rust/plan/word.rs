@@ -8,7 +8,7 @@ use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
 use super::types::Types;
-use crate::model::{self, Message, ModelId, Numeral, PartId, Protocol, Severity, Signal, Table};
+use crate::model::{self, Message, ModelId, NamedValue, Numeral, PartId, Protocol, Severity, Signal, Table};
 use crate::text::code;
 
 /// Named values.
@@ -49,7 +49,7 @@ impl Enumeration {
         let (variants, unknown) = variants(known.values.iter().map(|value| value.name.as_str()));
         let values = known.values.iter().zip(variants).map(|(value, variant)| Value {
             variant,
-            comment: Comment::line(format!("{}: `{}`{}.", value.raw, value.name, only(protocol, &value.models))),
+            comment: Comment::line(described(protocol, value)),
             raw: decimal(value.raw),
             name: value.name.clone(),
         });
@@ -60,6 +60,15 @@ impl Enumeration {
             values: values.collect(),
             unknown,
         }
+    }
+}
+
+/// Says what a named value is.
+fn described(protocol: &Protocol, value: &NamedValue) -> String {
+    let (raw, name, only) = (value.raw, &value.name, only(protocol, &value.models));
+    match &value.title {
+        Some(title) => doc::sentence_of(&format!("{}: {raw}, `{name}`{only}", title.in_rust_doc())),
+        None => format!("{raw}: `{name}`{only}."),
     }
 }
 
