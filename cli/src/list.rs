@@ -178,7 +178,7 @@ fn constant(protocol: &Protocol, message: &Message, selector: SelectorId) -> Opt
     let own = protocol.layouts_of(message).filter(|frame| frame.set.is_none() || !has_own);
     let own = own.map(|frame| &frame.constants).chain(message.set.as_ref().map(|set| &set.replies));
     let mut values = own.map(|constants| {
-        let constant = constants.iter().find(|constant| constant.selector == selector);
+        let constant = constants.iter().find(|constant| constant.selector == selector && constant.open == 0);
         constant.map(|constant| constant.value)
     });
     let first = values.next()??;

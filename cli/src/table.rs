@@ -217,7 +217,8 @@ fn open_selectors<'a>(protocol: &'a Protocol, decoded: &'a Decoded) -> impl Iter
     let is_fixed = |id: SelectorId| {
         let mut layouts = protocol.layouts_of(&protocol[decoded.message]);
         let layout = layouts.find(|layout| (layout.access, layout.kind) == (decoded.access, decoded.kind));
-        layout.is_some_and(|layout| layout.constants.iter().any(|constant| constant.selector == id))
+        layout
+            .is_some_and(|layout| layout.constants.iter().any(|constant| constant.selector == id && constant.open == 0))
     };
     let is_open = move |(id, _): &&(SelectorId, u64)| protocol[*id].normal.is_none() && !is_fixed(*id);
     let open = decoded.selectors.iter().filter(is_open);

@@ -43,6 +43,7 @@ pub use identifier::{ErrorCode, Foreign, Identifier, IdentifierField, Selector, 
 pub use lacking::{Lacking, only};
 pub use long::{Announcement, Carrier, LongMessage, Parts, Varying};
 pub(crate) use message::first_bytes;
+pub(crate) use message::submasks;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;

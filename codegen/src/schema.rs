@@ -11,7 +11,9 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use crate::syntax::ast::{ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, SignalPath, Spec, States};
+use crate::syntax::ast::{
+    ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, Numbers, SignalPath, Spec, States,
+};
 
 /// Returns the schema as indented text that ends in a line feed.
 pub fn schema() -> String {
@@ -71,6 +73,20 @@ fn bits(description: &str) -> Schema {
     let mut place = json_schema!({ "description": description, "type": "string" });
     values::PLACE.demand(place.ensure_object());
     place
+}
+
+impl JsonSchema for Numbers {
+    fn schema_name() -> Cow<'static, str> {
+        "Numbers".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Names::json_schema(generator)
+    }
 }
 
 impl JsonSchema for Names {

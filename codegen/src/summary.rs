@@ -71,7 +71,7 @@ fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
     let mut values: IndexMap<&str, BTreeSet<u64>> =
         protocol.selectors.iter().map(|selector| (selector.name.as_str(), BTreeSet::new())).collect();
     for constant in protocol.frames.iter().flat_map(|frame| &frame.constants) {
-        values.entry(&protocol[constant.selector].name).or_default().insert(constant.value);
+        values.entry(&protocol[constant.selector].name).or_default().extend(constant.values());
     }
     let used = values.into_iter().filter(|(_, values)| !values.is_empty());
     used.map(|(name, values)| (name.to_owned(), values.len())).collect()

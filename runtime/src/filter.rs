@@ -129,6 +129,14 @@ impl Filter {
         self
     }
 
+    /// Accepts any value of some bits of a place in the data.
+    #[must_use]
+    pub const fn open(mut self, place: Place, bits: u64) -> Self {
+        let counting = place.get(&self.data_mask) & !bits;
+        place.put(&mut self.data_mask, counting);
+        self
+    }
+
     /// Writes 1 to these bits of the data, and accepts any.
     #[must_use]
     pub(crate) const fn filled(self, ones: Data) -> Self {
@@ -304,6 +312,15 @@ mod tests {
         assert!(filter.matches(&frame(0, 0x41)));
         assert!(!filter.matches(&frame(0, 0x42)));
         assert_eq!(filter.frame(2).bytes(), [0x41, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_field_can_have_one_of_several_values() {
+        // Bits 3 and 2 say how many of four bytes are filled up.
+        let filter = Filter::EXTENDED.data(FUNCTION, 0x43).open(FUNCTION, 0x0C);
+        let accepted = |value: &u8| filter.matches(&frame(0, *value));
+        assert!((0..=u8::MAX).filter(accepted).eq([0x43, 0x47, 0x4B, 0x4F]));
+        assert_eq!((filter.frame(1).bytes()[0], filter.data_mask()[0]), (0x43, 0xF3));
     }
 
     #[test]

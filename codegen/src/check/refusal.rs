@@ -66,5 +66,6 @@ fn is_apart(reply: &FrameLayout, refusal: &FrameLayout) -> bool {
 
 /// Tests whether every frame of such a refusal is a reply of this kind.
 fn says_why(frame: &FrameLayout, refusal: &FrameLayout) -> bool {
-    frame.kind == Kind::Reply && frame.constants.iter().all(|constant| refusal.constants.contains(constant))
+    frame.kind == Kind::Reply
+        && frame.constants.iter().all(|constant| refusal.constants.iter().any(|known| constant.covers(known)))
 }

@@ -89,9 +89,11 @@ fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &D
     let frames = protocol.frames_of(request).chain(&request.refusals).filter(answers);
     let of_set = asked.set.map_or(request, |set| &protocol.messages[set]).set.iter().map(|set| &set.replies);
     let departures = frames.map(|frame| &frame.constants).chain(of_set).map(|constants| {
-        let found = constants.iter().filter_map(|Constant { selector, value: wanted, .. }| {
-            let found = value_of(protocol, reply, *selector).filter(|found| found != wanted)?;
-            Some(format!("`{}` is {found:#04X} here, and {wanted:#04X} in an answer", protocol[*selector].name))
+        let found = constants.iter().filter_map(|constant| {
+            let found = value_of(protocol, reply, constant.selector).filter(|found| !constant.admits(*found))?;
+            let wanted: Vec<_> = constant.values().map(|value| format!("{value:#04X}")).collect();
+            let name = &protocol[constant.selector].name;
+            Some(format!("`{name}` is {found:#04X} here, and {} in an answer", wanted.join(" or ")))
         });
         found.collect::<Vec<_>>()
     });

@@ -153,8 +153,10 @@ fn in_identifier(frame: &FrameLayout) -> Value {
 fn in_data(frame: &FrameLayout) -> Value {
     let constants = frame.constants.iter().filter_map(|constant| {
         let (place, value) = constant.in_payload()?;
-        let value = wide(value, place.width());
-        Some(Value::record().with("selector", Value::id(constant.selector)).with("value", value))
+        let others = constant.values().skip(1).map(|value| (wide(value, place.width()), Value::flag(true)));
+        let others = (constant.open != 0).then(|| Value::map(others));
+        let record = Value::record().with("selector", Value::id(constant.selector));
+        Some(record.with("value", wide(value, place.width())).maybe("others", others))
     });
     Value::List(constants.collect())
 }

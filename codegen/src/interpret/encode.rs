@@ -202,7 +202,7 @@ fn layout<'a>(
             SelectorPlace::Identifier(field) => u64::from(protocol[field].get(id)) == constant.value,
             SelectorPlace::Payload(_) => {
                 let name = &protocol[constant.selector].name;
-                content.selectors.iter().any(|(known, value)| known == name && *value == constant.value)
+                content.selectors.iter().any(|(known, value)| known == name && constant.admits(*value))
             }
         })
     };

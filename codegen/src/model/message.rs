@@ -198,11 +198,34 @@ pub struct Constant {
     pub selector: SelectorId,
     /// Where it stands.
     pub place: SelectorPlace,
-    /// Its value.
+    /// Its value. If it can have several, it is the one whose open bits are 0, and which is sent.
     pub value: u64,
+    /// The bits that do not count: the selector can have any value that differs in them alone.
+    pub open: u64,
 }
 
 impl Constant {
+    /// Tests whether it is a value that the selector can have.
+    pub fn admits(&self, value: u64) -> bool {
+        (self.value ^ value) & !self.open == 0
+    }
+
+    /// Tests whether another constant of the selector has values of this one alone.
+    pub fn covers(&self, other: &Self) -> bool {
+        self.selector == other.selector && self.admits(other.value) && other.open & !self.open == 0
+    }
+
+    /// Tests whether no value is one of both constants of a selector.
+    pub fn excludes(&self, other: &Self) -> bool {
+        self.selector == other.selector && (self.value ^ other.value) & !(self.open | other.open) != 0
+    }
+
+    /// Returns every value that the selector can have, the least first.
+    pub fn values(&self) -> impl Iterator<Item = u64> + use<> {
+        let value = self.value;
+        submasks(self.open).map(move |bits| value | bits)
+    }
+
     /// Returns the field of the identifier and its value, if it stands there.
     pub fn in_identifier(&self) -> Option<(FieldId, u32)> {
         match self.place {
@@ -253,6 +276,11 @@ pub struct FrameLayout {
     pub reserved: Reserved,
     /// The addressing modes by which it is sent, and who answers or sends it.
     pub travels: Vec<Travel>,
+}
+
+/// Returns every number whose bits are among those of a mask, the least first.
+pub(crate) fn submasks(mask: u64) -> impl Iterator<Item = u64> {
+    std::iter::successors(Some(0), move |bits: &u64| Some(bits.wrapping_sub(mask) & mask).filter(|next| *next != 0))
 }
 
 impl FrameLayout {

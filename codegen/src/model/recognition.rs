@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexMap;
 
@@ -106,6 +106,23 @@ impl<T> Choice<T> {
         }
     }
 
+    /// Adds every outcome, and the values of selectors that lead to it.
+    pub(crate) fn paths<'a>(&'a self, shown: &BTreeMap<SelectorId, u64>, found: &mut Vec<Path<'a, T>>) {
+        match self {
+            Self::End(outcome) => found.push((shown.clone(), outcome)),
+            Self::By { selector, cases, otherwise, .. } => {
+                for (value, next) in cases {
+                    let mut shown = shown.clone();
+                    shown.insert(*selector, *value);
+                    next.paths(&shown, found);
+                }
+                if let Some(next) = otherwise {
+                    next.paths(shown, found);
+                }
+            }
+        }
+    }
+
     /// Returns every outcome.
     pub fn ends(&self) -> Vec<&T> {
         match self {
@@ -123,8 +140,8 @@ impl<T> Choice<T> {
             Self::End(outcome) => test(outcome),
             Self::By { selector, cases, otherwise, .. } => {
                 if let Some(constant) = constants.iter().find(|constant| constant.selector == *selector) {
-                    let next = cases.get(&constant.value).or(otherwise.as_deref())?;
-                    return next.find_among(constants, test);
+                    let mut after = constant.values().filter_map(|value| cases.get(&value).or(otherwise.as_deref()));
+                    return after.find_map(|next| next.find_among(constants, test));
                 }
                 let mut after = cases.values().chain(otherwise.as_deref());
                 after.find_map(|next| next.find_among(constants, test))
@@ -132,6 +149,9 @@ impl<T> Choice<T> {
         }
     }
 }
+
+/// The values of selectors that lead to an outcome, and the outcome.
+pub(crate) type Path<'a, T> = (BTreeMap<SelectorId, u64>, &'a T);
 
 /// Cases up to this number are compared one after another, which takes less time than a hash.
 const FEW_CASES: usize = 24;
@@ -244,8 +264,7 @@ impl Planner<'_> {
         }
         let all = self.frames;
         let constant = |frame: &FrameId, selector: SelectorId| {
-            let constants = all[*frame].constants.iter();
-            constants.clone().find(|constant| constant.selector == selector).map(|constant| constant.value)
+            all[*frame].constants.iter().find(|constant| constant.selector == selector)
         };
         let asked = by.iter().position(|selector| frames.iter().any(|frame| constant(frame, *selector).is_some()));
         let Some(asked) = asked else {
@@ -255,14 +274,14 @@ impl Planner<'_> {
         let (selector, by) = (by[asked], &by[asked + 1..]);
         let mut cases: IndexMap<u64, Vec<FrameId>> = IndexMap::new();
         for frame in &frames {
-            if let Some(value) = constant(frame, selector) {
+            for value in constant(frame, selector).into_iter().flat_map(Constant::values) {
                 cases.entry(value).or_default();
             }
         }
         let mut others = Vec::new();
         for frame in frames {
-            if let Some(value) = constant(&frame, selector) {
-                cases.entry(value).or_default().push(frame);
+            if let Some(known) = constant(&frame, selector) {
+                known.values().for_each(|value| cases.entry(value).or_default().push(frame));
             } else {
                 cases.values_mut().for_each(|frames| frames.push(frame));
                 others.push(frame);

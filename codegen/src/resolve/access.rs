@@ -1,6 +1,7 @@
 //! Resolves accesses: which frames exist, which of them carry the signals, and who answers.
 
 use super::Resolver;
+use super::patterns::{Entries, entries};
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Side, Table, Timing, TimingId, Who};
@@ -152,10 +153,13 @@ impl Resolver<'_> {
 }
 
 /// Returns the constants that an access gives to a kind of frame.
-pub fn pattern_of(access: &ast::Access, kind: Kind) -> Option<&ast::Pattern> {
+pub fn pattern_of(access: &ast::Access, kind: Kind) -> Option<Entries<'_>> {
     match kind {
-        Kind::Request => access.request.as_ref(),
-        Kind::Reply => access.reply.as_ref(),
-        Kind::Report => access.report.as_ref(),
+        Kind::Request => access.request.as_ref().map(entries),
+        Kind::Reply => access
+            .reply
+            .as_ref()
+            .map(|reply| reply.iter().map(|(name, values)| (name.as_str(), &values.0[..])).collect()),
+        Kind::Report => access.report.as_ref().map(entries),
     }
 }

@@ -5,6 +5,7 @@ use super::access::{Modes, Times, pattern_of};
 use super::fields::Leaves;
 use super::lengths::lengths_with;
 use super::long::{Carried, Head};
+use super::patterns::entries;
 use super::sets::distinct;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
@@ -284,7 +285,7 @@ impl Resolver<'_> {
 
     /// Reads a pattern of numbers, and keeps the place of each.
     fn written(&mut self, path: &Path, pattern: &ast::Pattern, part: Part, identifier: &Identifier) -> Vec<Written> {
-        let constants = self.constants(path, pattern, identifier);
+        let constants = self.constants(path, entries(pattern), identifier);
         let at = |constant: &Constant| path.key(&self.tables.selectors[constant.selector].name).at_value();
         constants.into_iter().map(|constant| Written { constant, at: at(&constant), part }).collect()
     }
@@ -312,7 +313,7 @@ impl Resolver<'_> {
         self.check_header_name(&signal);
         let kinds = signal.kinds.clone();
         let place = SelectorPlace::Payload(signal.place);
-        (Constant { selector: self.add_selector(signal, None), place, value }, kinds)
+        (Constant { selector: self.add_selector(signal, None), place, value, open: 0 }, kinds)
     }
 
     /// Tests that a constant field does not have the name of a header field in another place.
@@ -358,9 +359,9 @@ impl Resolver<'_> {
     pub fn access_constants(&mut self, access: AccessId, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
         let spec = self.spec;
         let Some((name, access)) = spec.access.get_index(access.place()) else { return Vec::new() };
-        let Some(pattern) = pattern_of(access, kind) else { return Vec::new() };
+        let Some(entries) = pattern_of(access, kind) else { return Vec::new() };
         let path = Path::default().key("access").key(name).key(kind.name());
-        self.constants(&path, pattern, surroundings.identifier)
+        self.constants(&path, entries, surroundings.identifier)
     }
 
     /// Makes the frame of one kind of a message. `travel` has the constants of its access.
@@ -413,7 +414,7 @@ impl Resolver<'_> {
         let (name, known) = spec.access.get_index(owner.exchange.access.place())?;
         let pattern = known.refusal.as_ref()?;
         let path_of_pattern = Path::default().key("access").key(name).key("refusal");
-        let travel = self.constants(&path_of_pattern, pattern, surroundings.identifier);
+        let travel = self.constants(&path_of_pattern, entries(pattern), surroundings.identifier);
         let bare_choice =
             Choice { matched: choice.matched.clone(), replies: Vec::new(), fixed: Vec::new(), written: Vec::new() };
         let bare = Owner { signals: &Table::default(), ..*owner };
@@ -426,9 +427,7 @@ impl Resolver<'_> {
     fn check_constants(&mut self, frame: &FrameLayout, key: &str, choice: &Choice) {
         for (index, constant) in frame.constants.iter().enumerate() {
             let mut earlier = frame.constants[..index].iter();
-            if let Some(twice) =
-                earlier.find(|known| known.selector == constant.selector && known.value != constant.value)
-            {
+            if let Some(twice) = earlier.find(|known| known.selector == constant.selector && known != &constant) {
                 self.report_twice(frame, key, [twice, constant], choice);
             }
         }
@@ -454,11 +453,16 @@ impl Resolver<'_> {
             }
             _ => format!("take `{name}` out of one of the two places, or correct one of them"),
         };
-        let [low, high] = constants.map(|constant| constant.value);
-        let text = format!("in a {key} by `{access}`, `{name}` would have to be both {low:#04X} and {high:#04X}");
+        let [low, high] = constants.map(shown);
+        let text = format!("in a {key} by `{access}`, `{name}` would have to be both {low} and {high}");
         let diagnostic = Diagnostic::error(&rules::MATCH, first.1, text).help(help);
         self.diagnostics.push(diagnostic.other(second.1, second.0.name()));
     }
+}
+
+/// Shows the values that a constant can have.
+pub fn shown(constant: &Constant) -> String {
+    constant.values().map(|value| format!("{value:#04X}")).collect::<Vec<_>>().join(" or ")
 }
 
 /// Returns the ways in which a kind of frame is sent.

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::texts::remarks;
-use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
+use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal, submasks};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key, Pattern};
 use crate::syntax::tree::{Path, Step};
@@ -58,19 +58,60 @@ impl Resolver<'_> {
     }
 
     /// Reads a pattern of numbers.
-    pub fn constants(&mut self, path: &Path, pattern: &Pattern, identifier: &Identifier) -> Vec<Constant> {
-        let entries = pattern.iter();
-        entries.filter_map(|(name, text)| self.constant(&path.key(name), name, text, identifier)).collect()
+    pub fn constants(&mut self, path: &Path, entries: Entries<'_>, identifier: &Identifier) -> Vec<Constant> {
+        let entries = entries.into_iter();
+        entries.filter_map(|(name, values)| self.constant(&path.key(name), name, values, identifier)).collect()
     }
 
-    fn constant(&mut self, path: &Path, name: &str, text: &str, identifier: &Identifier) -> Option<Constant> {
+    fn constant(&mut self, path: &Path, name: &str, values: &[String], identifier: &Identifier) -> Option<Constant> {
         let selector = self.selector(path, name, identifier)?;
         let place = self.tables.selectors[selector].place;
         let greatest = match place {
             SelectorPlace::Identifier(field) => u64::from(u32::MAX >> (32 - identifier.fields[field].width)),
             SelectorPlace::Payload(place) => place.max(),
         };
-        Some(Constant { selector, place, value: self.integer(path, text, 0, greatest)? })
+        let mut numbers = Vec::new();
+        for (index, text) in values.iter().enumerate() {
+            let at = if values.len() > 1 { path.index(index) } else { path.clone() };
+            numbers.push(self.integer(&at, text, 0, greatest)?);
+        }
+        let (value, open) = self.alternatives(path, (name, place), &numbers)?;
+        Some(Constant { selector, place, value, open })
+    }
+
+    /// Finds the bits that a field leaves open if it can have one of several values. They are the bits in which these
+    /// differ, so every combination of them has to be a value.
+    fn alternatives(
+        &mut self,
+        path: &Path,
+        (name, place): (&str, SelectorPlace),
+        numbers: &[u64],
+    ) -> Option<(u64, u64)> {
+        let value = numbers.iter().copied().reduce(|all, number| all & number);
+        let Some(value) = value else {
+            let help = "write the values that it can have, or take the field out";
+            self.error_with_help(&rules::MATCH, path.at_value(), format!("`{name}` has no value"), help);
+            return None;
+        };
+        let open = numbers.iter().fold(0, |open, number| open | (number ^ value));
+        if open != 0 && matches!(place, SelectorPlace::Identifier(_)) {
+            let text = format!("`{name}` is a field of the identifier, which has one value");
+            self.error_with_help(&rules::MATCH, path.at_value(), text, "write an access for each value");
+            return None;
+        }
+        let missing = submasks(open).map(|bits| value | bits).find(|number| !numbers.contains(number));
+        if let Some(missing) = missing {
+            let text = format!("`{name}` can have {missing:#04X}, too: it differs from the others in the same bits");
+            let help = format!("add {missing:#04X} to the list, or write an access for each value");
+            self.error_with_help(&rules::MATCH, path.at_value(), text, help);
+            return None;
+        }
+        if numbers.len() > submasks(open).count() {
+            let text = format!("a value of `{name}` stands there twice");
+            self.error_with_help(&rules::MATCH, path.at_value(), text, "write each value once");
+            return None;
+        }
+        Some((value, open))
     }
 
     /// Finds a selector by name. A field of the identifier becomes a selector on its first use.
@@ -136,6 +177,14 @@ impl Resolver<'_> {
         }
         Some((field, start, end))
     }
+}
+
+/// What the fields of a pattern can be, by name.
+pub type Entries<'a> = Vec<(&'a str, &'a [String])>;
+
+/// Returns the entries of a pattern in which each field has one value.
+pub fn entries(pattern: &Pattern) -> Entries<'_> {
+    pattern.iter().map(|(name, text)| (name.as_str(), std::slice::from_ref(text))).collect()
 }
 
 /// Finds a field by its place. The place is in a type if the word around the field takes its fields

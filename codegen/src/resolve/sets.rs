@@ -2,7 +2,7 @@
 //! travel, like an access.
 
 use super::Resolver;
-use super::messages::{Draft, Owner, Surroundings};
+use super::messages::{Draft, Owner, Surroundings, shown};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
 use crate::resolve::rules;
@@ -117,15 +117,13 @@ impl Resolver<'_> {
 
     /// Tests that no selector has one value for the set and another one for its member.
     fn check_member(&mut self, set: &Message, member: &str, constants: &[Constant]) {
-        let other = |one: &Constant| {
-            let others = constants.iter().filter(|other| other.selector == one.selector && other.value != one.value);
-            others.map(|other| other.value).next()
-        };
+        let other =
+            |one: &Constant| constants.iter().find(|other| other.selector == one.selector && *other != one).copied();
         let contrary = constants.iter().find_map(|one| Some((one, other(one)?)));
-        let Some((Constant { selector, value, .. }, other)) = contrary else { return };
-        let name = &self.tables.selectors[*selector].name;
-        let text =
-            format!("in a frame of `{}`, `{name}` would have to be both {value:#04X} and {other:#04X}", set.name);
+        let Some((one, other)) = contrary else { return };
+        let name = &self.tables.selectors[one.selector].name;
+        let (value, other) = (shown(one), shown(&other));
+        let text = format!("in a frame of `{}`, `{name}` would have to be both {value} and {other}", set.name);
         let position =
             self.spec.messages.get(&set.name).and_then(|set| set.members.iter().position(|name| name == member));
         let at = set.doc.path.key("members").index(position.unwrap_or(0));

@@ -20,6 +20,9 @@ pub type Map<V> = IndexMap<String, V>;
 /// `{field: what it must be}`: a number, a range or the name of an address type.
 pub type Pattern = Map<String>;
 
+/// `{field: what it must be}`: a number, or a list of all numbers that it can be.
+pub type Constants = Map<Numbers>;
+
 /// A whole spec file.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -379,6 +382,10 @@ pub enum ByModel {
     /// One for each of these models: `{V10: 0, V11: 1}`.
     Each(Map<String>),
 }
+
+/// One number, or a list of numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Numbers(pub Vec<String>);
 
 /// One name, or a list of names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

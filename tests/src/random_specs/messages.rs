@@ -120,7 +120,11 @@ impl Draft {
             constants.put(name, value);
         }
         for kind in kinds {
-            access.put(*kind, constants.clone());
+            let mut constants = constants.clone();
+            if let Some((name, values)) = self.several(bus, traffic).filter(|_| *kind == "reply") {
+                constants.put(name, values);
+            }
+            access.put(*kind, constants);
         }
         let carrying = self.carrying(kinds, role);
         if carrying.len() < kinds.len() || self.chance(20) {
@@ -140,6 +144,16 @@ impl Draft {
         let name = self.names.plain(&mut traffic.access_names);
         traffic.access.put(name.clone(), access);
         traffic.accesses.push(Access { name, kinds: kinds.to_vec(), is_apart, has_command, role });
+    }
+
+    /// Returns two values of the field of the latest access, in few specs whose field stands in the header. The greatest
+    /// bit of the field is in no other value. Specs without it stay as they are, so the number that decides is drawn apart.
+    fn several(&mut self, bus: &Bus, traffic: &Traffic) -> Option<(String, Value)> {
+        let function = bus.function.as_ref().filter(|function| function.bits >= 5)?;
+        let is_open = bus.header.0.contains_key(&function.name) && self.random.clone().u8(..100) < 30;
+        let value = traffic.functions;
+        let other = value | 1 << (function.bits - 1);
+        is_open.then(|| (function.name.clone(), list([value.to_string(), other.to_string()])))
     }
 
     fn carrying(&mut self, kinds: &[&'static str], role: Role) -> Vec<&'static str> {

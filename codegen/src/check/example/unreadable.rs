@@ -104,7 +104,7 @@ impl Slip {
             SelectorPlace::Payload(place) => place.get(&data),
         };
         let slipped = |layout: &FrameLayout| {
-            let mut wrong = layout.constants.iter().filter(|constant| read(constant) != constant.value);
+            let mut wrong = layout.constants.iter().filter(|constant| !constant.admits(read(constant)));
             let (constant, None) = (wrong.next()?, wrong.next()) else { return None };
             let (written, found) = (constant.value, read(constant));
             let name = &protocol[constant.selector].name;

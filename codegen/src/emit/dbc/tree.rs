@@ -194,7 +194,7 @@ fn place(protocol: &Protocol, selector: SelectorId) -> Option<Place> {
 }
 
 fn constant(of: Candidate, selector: SelectorId) -> Option<u64> {
-    of.layout.constants.iter().find(|known| known.selector == selector).map(|known| known.value)
+    of.layout.constants.iter().find(|known| known.selector == selector && known.open == 0).map(|known| known.value)
 }
 
 fn all_have(candidates: &[Candidate], selector: SelectorId) -> bool {

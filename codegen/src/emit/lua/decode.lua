@@ -137,7 +137,8 @@ local function with_data(frame, layouts)
     for _, constant in ipairs(layout.in_data) do
       local index = constant.selector
       found[index] = found[index] or key(get(frame, protocol.selectors[index].place))
-      if found[index] ~= constant.value then return false end
+      local is_other = constant.others and constant.others[found[index]]
+      if found[index] ~= constant.value and not is_other then return false end
     end
     return true
   end)

@@ -44,9 +44,12 @@ pub fn continuation((source, raw): &(Source, TokenStream)) -> TokenStream {
 
 /// Emits a filter.
 pub fn filter(Filter { selectors, constants }: &Filter) -> TokenStream {
-    let constants = constants.iter().map(|(source, value)| match source {
+    let constants = constants.iter().map(|(source, value, open)| match source {
         Source::Identifier(place) => quote!(.id(Identifier::#place, #value)),
-        Source::Data(selector) => quote!(.data(#selector.place, #value)),
+        Source::Data(selector) => {
+            let open = open.iter();
+            quote!(.data(#selector.place, #value) #(.open(#selector.place, #open))*)
+        }
     });
     let selectors = (!selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
     quote!(FRAME #selectors #(#constants)*)

@@ -7,7 +7,7 @@ use crate::interpret::assembly::{Assembled, Peers, Taken, module};
 use crate::interpret::encode::{frame, refuse};
 use crate::interpret::{Frame, Refusal, padded};
 use crate::model::{
-    FrameLayout, Isotp, LongMessage, ModeId, ModelId, Protocol, Side, Transport, TransportFrame, TransportId,
+    Constant, FrameLayout, Isotp, LongMessage, ModeId, ModelId, Protocol, Side, Transport, TransportFrame, TransportId,
 };
 
 /// Data bytes of a single and of a consecutive frame, of a first one, and of the longest message.
@@ -185,6 +185,11 @@ fn announced<'a>(part: &Part<'a>) -> Option<(usize, &'a [u8])> {
     (size > part.most_bytes()).then_some((size, data))
 }
 
+/// Tests whether the data show a constant that stands there.
+fn shows(constant: &Constant, data: [u8; 8]) -> bool {
+    constant.in_payload().is_none_or(|(place, _)| constant.admits(place.get(&data)))
+}
+
 /// Finds the message whose data begin so.
 fn message(part: &Part, data: &[u8], size: usize) -> Option<Started> {
     let Part { protocol, model, id, frame, decoded } = *part;
@@ -192,7 +197,7 @@ fn message(part: &Part, data: &[u8], size: usize) -> Option<Started> {
     let is_shown = |layout: &FrameLayout| {
         layout.sender == decoded.sender
             && layout.identifier().all(|(field, value)| protocol[field].get(frame.id) == value)
-            && layout.payload().all(|(place, value)| place.get(&head) == value)
+            && layout.constants.iter().all(|constant| shows(constant, head))
             && layout.head() <= size
     };
     let has_model = |long: &LongMessage| model.is_none_or(|model| long.content.is_of(model));

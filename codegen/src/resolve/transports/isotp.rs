@@ -93,7 +93,7 @@ fn ways<'a>(spec: &'a ast::Spec, message: &'a ast::Message) -> Vec<Way<'a>> {
         let answers = if message.answers.is_empty() { &access.answers } else { &message.answers };
         for (side, _) in SIDES {
             let mut shown: Vec<_> =
-                patterns(access, side).map(|pattern| in_identifier(spec, message, pattern)).collect();
+                patterns(access, side).map(|pattern| in_identifier(spec, message, &pattern)).collect();
             if shown.is_empty() {
                 shown.push(in_identifier(spec, message, &Pattern::new()));
             }
@@ -105,10 +105,13 @@ fn ways<'a>(spec: &'a ast::Spec, message: &'a ast::Message) -> Vec<Way<'a>> {
 }
 
 /// Returns the patterns of an access for frames that a side sends.
-fn patterns<'a>(access: &'a ast::Access, side: &'a str) -> impl Iterator<Item = &'a Pattern> {
+fn patterns<'a>(access: &'a ast::Access, side: &'a str) -> impl Iterator<Item = Pattern> {
     let from = access.from.as_deref().unwrap_or("module");
-    let all = [("controller", &access.request), ("module", &access.reply), (from, &access.report)];
-    all.into_iter().filter(move |(sender, _)| *sender == side).filter_map(|(_, pattern)| pattern.as_ref())
+    // A field of the identifier has one value.
+    let single = |(name, values): (&String, &ast::Numbers)| Some((name.clone(), values.0.first()?.clone()));
+    let reply = access.reply.as_ref().map(|reply| reply.iter().filter_map(single).collect());
+    let all = [("controller", access.request.clone()), ("module", reply), (from, access.report.clone())];
+    all.into_iter().filter(move |(sender, _)| *sender == side).filter_map(|(_, pattern)| pattern)
 }
 
 /// Returns what frames of a message show in their identifier, besides addresses.

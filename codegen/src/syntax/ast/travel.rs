@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Map, Names, Pattern};
+use super::{Constants, Map, Names, Pattern};
 
 /// An addressing mode: the request's addresses, and the reply's by who answers.
 #[derive(Clone, Debug, Deserialize)]
@@ -41,8 +41,9 @@ pub struct Access {
     /// `{function: 3}`. Write `{}` if no values are fixed. If absent, there is no request.
     pub request: Option<Pattern>,
     /// Raw values that fields of the identifier and the header have in a reply: `{function: 3}`.
+    /// A field of the header can have one of several: `{command: [0x43, 0x47, 0x4B, 0x4F]}`.
     /// Write `{}` if no values are fixed. If absent, there is no reply.
-    pub reply: Option<Pattern>,
+    pub reply: Option<Constants>,
     /// Raw values that fields of the identifier and the header have in a reply that refuses the
     /// request: `{function: 0x80}`. They replace those of `reply`. Another message has such
     /// replies, and says why. If absent, there are none.

@@ -208,8 +208,10 @@ impl Access {
 /// Names the constants by which one way to use an access differs from the others.
 fn shows(protocol: &Protocol, frames: &[Shown]) -> String {
     let facts = frames.iter().flat_map(|frame| {
-        let facts = frame.constants.iter().map(|Constant { selector, value, .. }| {
-            format!("In a {}, `{}` is `{value:#X}`.", frame.kind.name(), protocol[*selector].name)
+        let facts = frame.constants.iter().map(|constant| {
+            let values: Vec<_> = constant.values().map(|value| format!("`{value:#X}`")).collect();
+            let name = &protocol[constant.selector].name;
+            format!("In a {}, `{name}` is {}.", frame.kind.name(), values.join(" or "))
         });
         facts.collect::<Vec<_>>()
     });

@@ -63,10 +63,8 @@ impl Planner<'_> {
     pub fn direction(&self, course: &Course) -> Option<Direction> {
         course.choice.as_ref()?;
         let (rest, frames) = split(rows(self.protocol, course));
-        let frames = frames.into_iter().map(|row| {
-            let outcome = self.candidates(&row.outcome);
-            Arm { sets: vec![row.constants], outcome }
-        });
+        let frames = joined(frames).into_iter();
+        let frames = frames.map(|arm| Arm { outcome: self.candidates(&arm.outcome), sets: arm.sets });
         let frames = Cases { arms: frames.collect(), rest: rest.map(|row| self.candidates(&row.outcome)) };
         let (rest, rows) = split(lengths(self.protocol, course));
         Some(Direction { frames, lengths: Cases { arms: joined(rows), rest: rest.map(|row| row.outcome) } })

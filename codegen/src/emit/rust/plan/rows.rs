@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use crate::model::{Constant, Course, FrameId, Protocol, SelectorId};
+use crate::model::{Choice, Course, FrameId, Protocol, SelectorId};
 
 /// Selectors and the values they must have.
 pub type Constants = BTreeMap<SelectorId, u64>;
@@ -19,19 +19,32 @@ pub struct Row<T> {
 /// Returns the kinds of frames by their constants. A row comes before those whose constants it
 /// contains. So the first row that fits a frame has all constants that the frame shows.
 pub fn rows(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<FrameId>>> {
-    let groups = course.choice.iter().flat_map(|choice| choice.ends());
-    let frames = groups.flat_map(|group| group.choice.iter().flat_map(|choice| choice.ends()));
-    in_order(frames.map(|frames| row(protocol, frames, |_| true, frames.clone())))
+    let mut found = Vec::new();
+    for (shown, group) in paths(course.choice.as_ref(), &Constants::new()) {
+        for (shown, frames) in paths(group.choice.as_ref(), &shown) {
+            found.push(row(protocol, frames, &shown, frames.clone()));
+        }
+    }
+    in_order(found.into_iter())
+}
+
+/// Returns every outcome of a choice, with the values of selectors that lead to it.
+fn paths<'a, T>(choice: Option<&'a Choice<T>>, shown: &Constants) -> Vec<(Constants, &'a T)> {
+    let mut found = Vec::new();
+    if let Some(choice) = choice {
+        choice.paths(shown, &mut found);
+    }
+    found
 }
 
 /// Returns the lengths of frames by their constants in the identifier, in the same order. The
 /// shortest length comes first.
 fn all_lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
-    let groups = course.choice.iter().flat_map(|choice| choice.ends());
-    in_order(groups.map(|group| {
+    let groups = paths(course.choice.as_ref(), &Constants::new()).into_iter();
+    in_order(groups.map(|(shown, group)| {
         let frames: Vec<_> = group.choice.iter().flat_map(|choice| choice.ends()).flatten().copied().collect();
         let lengths = group.lengths.iter().map(|(length, _)| *length).collect();
-        row(protocol, &frames, |constant| constant.in_identifier().is_some(), lengths)
+        row(protocol, &frames, &shown, lengths)
     }))
 }
 
@@ -70,11 +83,11 @@ pub fn joined<T: PartialEq>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
     joined
 }
 
-/// Makes a row from the constants that frames show.
-fn row<T>(protocol: &Protocol, frames: &[FrameId], shows: impl Fn(&Constant) -> bool, outcome: T) -> Row<T> {
+/// Makes a row from the constants that frames have in the selectors that lead to them. `shown` has the values of these.
+fn row<T>(protocol: &Protocol, frames: &[FrameId], shown: &Constants, outcome: T) -> Row<T> {
     let constants = |frame: &FrameId| -> Constants {
-        let known = protocol[*frame].constants.iter().filter(|constant| shows(constant));
-        known.map(|constant| (constant.selector, constant.value)).collect()
+        let known = protocol[*frame].constants.iter();
+        known.filter_map(|constant| Some((constant.selector, *shown.get(&constant.selector)?))).collect()
     };
     let all: Constants = frames.iter().flat_map(constants).collect();
     let own = frames.iter().filter(|frame| constants(frame) == all).min().copied();

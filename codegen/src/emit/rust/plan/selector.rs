@@ -107,8 +107,8 @@ impl InData {
 pub struct Filter {
     /// The constants of the selectors that they have in the data.
     pub selectors: Vec<Ident>,
-    /// What they show, and its value.
-    pub constants: Vec<(Source, TokenStream)>,
+    /// What they show, its value, and the bits that do not count, if there are any.
+    pub constants: Vec<(Source, TokenStream, Option<TokenStream>)>,
 }
 
 impl Filter {
@@ -120,7 +120,8 @@ impl Filter {
         });
         let constants = constants.iter().map(|constant| {
             let selector = &known[constant.selector];
-            (selector.source.clone(), selector.value(constant.value))
+            let open = (constant.open != 0).then(|| selector.value(constant.open));
+            (selector.source.clone(), selector.value(constant.value), open)
         });
         Self { selectors: in_data.collect(), constants: constants.collect() }
     }
