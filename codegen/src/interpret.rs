@@ -6,6 +6,7 @@ mod content;
 mod decode;
 mod device;
 mod encode;
+mod given;
 mod long;
 pub(crate) mod notes;
 mod request;

@@ -3,6 +3,7 @@
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
 use super::encode::{find_message, frame, length_with, refuse};
+use super::given::Given;
 use super::long::{typed, typed_frames};
 use super::request::{Target, address, put_signals, raw_address, written_address};
 use super::transfer::frames;
@@ -91,11 +92,12 @@ fn one(
     signals: &[(String, String)],
 ) -> Result<Frame, Refusal> {
     let message = &protocol[layout.message];
-    let signals = &parted_texts(message, signals)?;
     let (mode, pattern) = way(protocol, message, layout, sent.to)?;
+    let given = Given::of(protocol, (message, layout), pattern, parted_texts(message, signals)?)?;
     let id = identifier(protocol, (message, layout), (mode, pattern), sent)?;
     let mut data = blank_data(layout);
     put_normal(protocol, layout, &mut data);
+    let (id, signals) = (given.put(protocol, id, &mut data), &given.signals);
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
     put_signals(protocol, message, (layout, length), signals, (sent.model, Limits::Bits), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());

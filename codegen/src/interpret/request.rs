@@ -3,6 +3,7 @@
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
 use super::encode::{confirm, continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
+use super::given::Given;
 use super::transfer::frames;
 use super::value::{Limits, raw_of, typed};
 use super::{Frame, Input, Refusal, decode};
@@ -253,10 +254,12 @@ fn made(
     if let Some(model) = model.filter(|model| !message.is_of(*model)) {
         return Err(not_of(protocol, message, model));
     }
-    let signals = &parted_texts(message, signals)?;
     let mode = mode(protocol, message, layout, target)?;
+    let pattern = mode.request.as_ref().ok_or_else(|| refuse(message, "this mode has no request"))?;
+    let given = Given::of(protocol, (message, layout), pattern, parted_texts(message, signals)?)?;
     let id = identifier(protocol, message, layout, mode, target, source)?;
     let mut data = blank_data(layout);
+    let (id, signals) = (given.put(protocol, id, &mut data), &given.signals);
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
     put_signals(protocol, message, (layout, length), signals, (model, Limits::Range(model)), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
