@@ -25,7 +25,9 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 fn complaint(protocol: &Protocol, message: &Message, refusal: &FrameLayout) -> Option<(String, String)> {
     let name = &message.name;
     let frames = protocol.layouts_of(message).filter(|frame| frame.exchange == refusal.exchange);
-    let replies: Vec<_> = frames.clone().filter(|frame| frame.kind == Kind::Reply).collect();
+    let own = frames.clone().filter(|frame| frame.kind == Kind::Reply).map(|frame| &frame.constants[..]);
+    let of_set = message.set.as_ref().filter(|set| set.kinds.contains(&Kind::Reply)).map(|set| &set.replies[..]);
+    let replies: Vec<_> = own.chain(of_set).collect();
     if replies.is_empty() || !frames.clone().any(|frame| frame.kind == Kind::Request) {
         let text =
             format!("a refusal of `{name}` stands in place of the reply to a request, but there is no such reply");
@@ -57,11 +59,9 @@ fn shown(protocol: &Protocol, refusal: &FrameLayout) -> String {
 }
 
 /// Tests whether one field has different constants in both.
-fn is_apart(reply: &FrameLayout, refusal: &FrameLayout) -> bool {
-    let differs = |known: &Constant| {
-        refusal.constants.iter().any(|other| other.selector == known.selector && other.value != known.value)
-    };
-    reply.constants.iter().any(differs)
+fn is_apart(reply: &[Constant], refusal: &FrameLayout) -> bool {
+    let differs = |known: &Constant| refusal.constants.iter().any(|other| other.excludes(known));
+    reply.iter().any(differs)
 }
 
 /// Tests whether every frame of such a refusal is a reply of this kind.
