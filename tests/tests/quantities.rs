@@ -314,9 +314,10 @@ fn a_module_is_off_only_if_it_says_so_after_it_has_confirmed_that() {
     told.hold(&[(VOLTAGE, 500_000), (CURRENT, 10_000), (DELIVERING, 1)]);
     let set_point = frame(0x029C_02F0, 0x0007_A120_0000_2710);
     assert_eq!(told.sent(), set_point);
-    assert_eq!(told.hears(0x029C_F002, 0x0007_A120_0000_2710), (false, Output::On));
+    assert_eq!(told.hears(0x029C_F002, 0x0007_A120_0000_2710), (false, Output::Unknown));
     assert_eq!(told.sent(), frame(0x029A_02F0, 0));
-    assert_eq!(told.hears(0x029A_F002, 0), (true, Output::On));
+    assert_eq!(told.hears(0x029A_F002, 0), (true, Output::Unknown));
+    assert_eq!(told.reads(false), Output::On);
     told.duty.end(&mut told.client);
     assert_eq!(told.duty.output(), Output::Unknown);
     told.hold(&[(DELIVERING, 0)]);
@@ -329,6 +330,26 @@ fn a_module_is_off_only_if_it_says_so_after_it_has_confirmed_that() {
     assert_eq!(told.reads(true), Output::Off);
     told.duty.forget();
     assert_eq!([told.duty.output(), told.reads(true)], [Output::Unknown; 2]);
+}
+
+#[test]
+fn what_was_confirmed_counts_no_more_once_something_else_is_held() {
+    let client = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 0 });
+    let mut told = Told { client, duty: Duty::NONE, now: 0 };
+    let (on, off) = (0, 0x0100_0000_0000_0000);
+    told.hold(&[(DELIVERING, 1)]);
+    assert_eq!(told.sent(), frame(0x029A_02F0, on));
+    assert_eq!(told.hears(0x029A_F002, on), (true, Output::Unknown));
+    // The same again changes nothing.
+    assert_eq!(told.reads(false), Output::On);
+    told.hold(&[(DELIVERING, 1)]);
+    assert_eq!(told.duty.output(), Output::On);
+    told.hold(&[(DELIVERING, 0)]);
+    // Its reading is from before the switch-off.
+    assert_eq!([told.duty.output(), told.reads(true)], [Output::Unknown; 2]);
+    while told.sent() != frame(0x029A_02F0, off) {}
+    assert_eq!(told.hears(0x029A_F002, off), (true, Output::Unknown));
+    assert_eq!(told.reads(true), Output::Off);
 }
 
 #[test]

@@ -48,8 +48,9 @@ impl Duty {
     }
 
     /// [Holds](Client::hold) requests, each [after](Client::hold_after) the one before, and renews them every `refresh`
-    /// milliseconds. Call it again and again: what is held already goes on, and other values replace it. Without a
-    /// request the module may do what it does, so nothing needs to be confirmed.
+    /// milliseconds. Call it again and again: what is held already goes on, and other values replace it. If the last
+    /// request changes, nothing is known of the output until the module says something. Without a request the module
+    /// may do what it does, so nothing needs to be confirmed.
     ///
     /// # Errors
     ///
@@ -70,6 +71,9 @@ impl Duty {
             };
             self.first = if last.is_none() { Some(held) } else { self.first };
             last = Some(held);
+        }
+        if last != self.last {
+            self.forget();
         }
         self.is_confirmed |= last.is_none();
         self.last = last;
