@@ -20,6 +20,10 @@ bench *words:
 growth:
     cargo bench --quiet -p canspec --bench growth
 
+# What the command takes to decode a log, beside a program by hand and cantools.
+logs:
+    cargo bench --quiet -p canspec --bench logs
+
 # Look for inputs that break `front_end` or `frames` for some seconds, guided by coverage.
 fuzz target seconds="600":
     cargo run --quiet --bin seeds -- target/fuzz

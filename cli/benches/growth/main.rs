@@ -1,6 +1,8 @@
 //! Prints what the command costs for specs of 10 to 10,000 messages, and for other things that grow, as Markdown tables.
 #![expect(clippy::print_stdout, reason = "the table is what people call it for")]
 
+#[path = "../cost/mod.rs"]
+mod cost;
 mod specs;
 
 use std::fmt::Write as _;
@@ -8,9 +10,9 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use wait4::Wait4;
+use cost::{Cost, instructions};
 
 /// How many messages of four signals a spec has.
 const MESSAGES: [u32; 5] = [10, 100, 1_000, 4_000, 10_000];
@@ -62,21 +64,9 @@ fn main() -> io::Result<()> {
     of_files(folder.path())
 }
 
-/// What a call takes.
-struct Cost {
-    /// Time of all processors.
-    time: Duration,
-    /// Time that somebody waits.
-    wait: Duration,
-    /// The most memory at a time, in bytes.
-    memory: u64,
-}
-
-impl Cost {
-    /// Writes time and memory as two cells.
-    fn cells(&self) -> String {
-        format!("{:.2} s | {} MiB", self.time.as_secs_f64(), self.memory >> 20)
-    }
+/// Writes time and memory as two cells.
+fn cells(cost: &Cost) -> String {
+    format!("{:.2} s | {} MiB", cost.time.as_secs_f64(), cost.memory >> 20)
 }
 
 /// Prints what specs of more and more messages cost.
@@ -88,8 +78,8 @@ fn of_messages(folder: &Path) -> io::Result<()> {
     for count in MESSAGES {
         let spec = write(folder, "synthetic.yaml", &specs::messages(count))?;
         let out = folder.join("out");
-        let check = cost(&[Path::new("check"), &spec])?.cells();
-        let compile = cost(&[Path::new("compile"), &spec, Path::new("--out"), &out])?.cells();
+        let check = cells(&cost(&[Path::new("check"), &spec])?);
+        let compile = cells(&cost(&[Path::new("compile"), &spec, Path::new("--out"), &out])?);
         let rust = fs::read_to_string(out.join("synthetic.rs"))?.lines().count() / usize::try_from(count).unwrap_or(1);
         let line = time_a_line(folder, &spec, count)?.as_nanos();
         let instructions = instructions_a_line(folder, &spec, count)?;
@@ -110,7 +100,7 @@ fn of_lines(folder: &Path) -> io::Result<()> {
         let log = log(folder, "long.log", 100, count)?;
         let [table, json] = ["text", "jsonl"].map(|format| cost(&decode_as(format, &spec, &log)));
         let row =
-            |cost: Cost| format!("{} | {:.1} million", cost.cells(), f64::from(count) / cost.wait.as_secs_f64() / 1e6);
+            |cost: Cost| format!("{} | {:.1} million", cells(&cost), f64::from(count) / cost.wait.as_secs_f64() / 1e6);
         println!("| {count} | {} | {} |", row(table?), row(json?));
     }
     Ok(())
@@ -227,12 +217,14 @@ fn cost(arguments: &[&Path]) -> io::Result<Cost> {
 
 /// Returns what the command takes, and whether it finds no error.
 fn run(arguments: &[&Path], out: Option<&Path>) -> io::Result<(Cost, bool)> {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
     let out = out.map_or_else(|| Ok(Stdio::null()), |path| File::create(path).map(Stdio::from))?;
-    let start = Instant::now();
-    let used = command.args(arguments).stdout(out).stderr(Stdio::null()).spawn()?.wait4()?;
-    let cost = Cost { time: used.rusage.utime, wait: start.elapsed(), memory: used.rusage.maxrss };
-    Ok((cost, used.status.success()))
+    Cost::of(command(arguments).stdout(out))
+}
+
+fn command(arguments: &[&Path]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    command.args(arguments);
+    command
 }
 
 /// Returns how long a further line of a log takes.
@@ -251,21 +243,8 @@ fn instructions_a_line(folder: &Path, spec: &Path, messages: u32) -> io::Result<
     let mut counts = Vec::new();
     for lines in [few, many] {
         let log = log(folder, "counted.log", messages, lines)?;
-        counts.extend(instructions(&decode(spec, &log)));
+        counts.extend(instructions(&command(&decode(spec, &log))));
     }
     let [least, most] = counts.as_slice() else { return Ok(None) };
     Ok(Some((most - least) / u64::from(many - few)))
-}
-
-fn instructions(arguments: &[&Path]) -> Option<u64> {
-    let output = Command::new("valgrind")
-        .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
-        .arg(env!("CARGO_BIN_EXE_canspec"))
-        .args(arguments)
-        .stdout(Stdio::null())
-        .output()
-        .ok()?;
-    let text = String::from_utf8(output.stderr).ok()?;
-    let line = text.lines().find(|line| line.contains("refs:"))?;
-    line.rsplit(' ').next()?.replace(',', "").parse().ok()
 }
