@@ -51,7 +51,9 @@ impl Reader {
     /// Says why the line is unreadable.
     pub fn read<'a>(&'a mut self, line: &'a str) -> Result<Option<Entry<'a>>, String> {
         // Most lines of most logs; no other format has lines that can be read so.
-        if let (Some(Format::Compact), Some(entry)) = (&self.0, compact::usual(line)) {
+        if let Some(Format::Compact) = self.0
+            && let Some(entry) = compact::usual(line)
+        {
             return Ok(Some(entry));
         }
         if line.trim_ascii().is_empty() {

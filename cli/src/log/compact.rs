@@ -29,9 +29,9 @@ pub fn usual(line: &str) -> Option<Entry<'_>> {
     Some(Entry { time: Some(time.into()), channel: Some(channel), frame, digit: 0 })
 }
 
-/// Splits a short word off a text, as `split_once` does, which costs more.
+/// Splits a word off a text, as `split_once` does, which costs more.
 fn split(text: &str, separator: u8) -> Option<(&str, &str)> {
-    let end = text.bytes().position(|byte| byte == separator)?;
+    let end = memchr::memchr(separator, text.as_bytes())?;
     Some((&text[..end], &text[end + 1..]))
 }
 

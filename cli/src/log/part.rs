@@ -135,9 +135,10 @@ fn is_decimal(text: &[u8]) -> bool {
 
 /// Tests for seconds that JSON has as they are: digits with a point between them, and no zero before them.
 pub fn is_usual_stamp(text: &str) -> bool {
-    let others = text.bytes().filter(|byte| !byte.is_ascii_digit()).count();
-    let point = text.bytes().position(|byte| byte == b'.');
-    others == 1 && point.is_some_and(|point| point > 0 && point + 1 < text.len()) && !text.starts_with('0')
+    let others = |text: &str| text.bytes().position(|byte| !byte.is_ascii_digit());
+    let point = others(text).filter(|point| *point > 0 && !text.starts_with('0'));
+    let fraction = point.and_then(|point| text[point..].strip_prefix('.'));
+    fraction.is_some_and(|fraction| !fraction.is_empty() && others(fraction).is_none())
 }
 
 /// Tests whether JSON is a number.
@@ -237,11 +238,21 @@ const VALUES: [u8; 256] = {
 
 /// Reads a number of 32 bits in hexadecimal digits.
 pub fn hexadecimal(digits: &str) -> Option<u32> {
+    if let Ok(digits) = digits.as_bytes().try_into() {
+        return eight_digits(digits);
+    }
     let number = digits.bytes().try_fold(0, |number, digit| {
         let value = VALUES[usize::from(digit)];
         (value < 16 && number >> 28 == 0).then(|| number << 4 | u32::from(value))
     });
     number.filter(|_| !digits.is_empty())
+}
+
+/// Reads eight hexadecimal digits, which are tested all at once.
+fn eight_digits(digits: [u8; 8]) -> Option<u32> {
+    let values = digits.map(|digit| VALUES[usize::from(digit)]);
+    let number = values.iter().fold(0, |number, value| number << 4 | u32::from(value & 0x0F));
+    (values.iter().fold(0, |seen, value| seen | value) < 16).then_some(number)
 }
 
 /// Reads data in hexadecimal digits without anything between them.
