@@ -82,8 +82,11 @@ impl Number<'_> {
     /// Returns the scale as the runtime computes with it. The checks ensure that its numbers fit.
     fn runtime_scale(&self) -> Scale {
         let part = |number: i128| i64::try_from(number).unwrap_or(1);
-        Scale::new(part(self.scale.numerator()), part(self.scale.denominator()))
-            .offset(part(self.offset.numerator()), part(self.offset.denominator()))
+        let scale = Scale::new(part(self.scale.numerator()), part(self.scale.denominator()));
+        if self.offset == Rational::ZERO {
+            return scale;
+        }
+        scale.offset(part(self.offset.numerator()), part(self.offset.denominator()))
     }
 
     fn number(&self, value: f64, allowed: &Allowed) -> Result<u64, String> {

@@ -318,12 +318,16 @@ impl<'a> Decoder<'a> {
 
     /// Finds a mode of the message whose addresses are all documented, as nearly every frame has one.
     fn documented(&self, frame: &FrameLayout) -> Option<Addressing<'a>> {
-        let protocol = self.protocol;
-        let ways = frame.travels.iter();
-        let ways = ways.filter_map(|way| Some((*way, protocol[way.mode].pattern(frame.is_to_module(), way.who)?)));
-        let fitting = ways.filter(|(_, pattern)| self.fits(pattern) == Some(false));
-        let best = fitting.min_by_key(|(_, pattern)| Reverse(pattern.constants))?;
-        Some(Addressing { fit: Fit::Documented, constants: best.1.constants, travel: Some(best) })
+        let mut best: Option<(Travel, &AddressPattern)> = None;
+        for way in &frame.travels {
+            let Some(pattern) = self.protocol[way.mode].pattern(frame.is_to_module(), way.who) else { continue };
+            let is_better = best.is_none_or(|(_, known)| known.constants < pattern.constants);
+            if is_better && self.fits(pattern) == Some(false) {
+                best = Some((*way, pattern));
+            }
+        }
+        let (_, pattern) = best?;
+        Some(Addressing { fit: Fit::Documented, constants: pattern.constants, travel: best })
     }
 
     /// Finds the mode that fits best if none fits as documented.
@@ -371,14 +375,13 @@ impl<'a> Decoder<'a> {
     fn decoded(&self, (id, frame): Candidate) -> Decoded {
         let message = self.message((id, frame));
         let addressing = self.addressing(frame);
-        let known = self.protocol.signals_of(frame);
-        let present = known.filter(|(_, signal)| usize::from(signal.end()) <= self.frame.data.len());
-        let readings = present.map(|(id, signal)| {
-            let bits = signal.place.get(&self.data);
-            Reading::of(self.protocol, (id, signal.on(self.model)), bits)
-        });
         let mut signals = Vec::with_capacity(frame.signals.len());
-        signals.extend(readings);
+        for (id, signal) in self.protocol.signals_of(frame) {
+            if usize::from(signal.end()) <= self.frame.data.len() {
+                let bits = signal.place.get(&self.data);
+                signals.push(Reading::of(self.protocol, (id, signal.on(self.model)), bits));
+            }
+        }
         let selectors = self.selectors(&frame.selectors);
         let reserved = self.reserved(frame);
         let mut notes = Vec::new();
