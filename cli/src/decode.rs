@@ -211,9 +211,10 @@ impl Decode {
         out: &mut Vec<u8>,
         line: Line<'_>,
     ) -> Result<(), String> {
-        let entry = state.reader.read(line.text?)?;
-        let entry = entry.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
-        let Some(entry) = entry else { return Ok(()) };
+        let Some(entry) = state.reader.read(line.text?)? else { return Ok(()) };
+        if !self.channels.keep(entry.channel, &mut counts.others) {
+            return Ok(());
+        }
         let decoded = decode(devices, &entry.frame);
         counts.frames += 1;
         counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
@@ -346,21 +347,18 @@ type Answer<'a> = (Device<'a>, Result<Decoded, Unrecognised>);
 /// Decodes by the first protocol that recognises the frame. If none does, it is the one whose tests the frame passes
 /// furthest.
 fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
-    let mut nearest: Option<Answer<'a>> = None;
-    for &(protocol, model) in devices {
-        let answer = interpret::decode(protocol, model, frame);
-        let is_nearest = nearest.as_ref().is_none_or(|(_, known)| passed(&answer) > passed(known));
-        if answer.is_ok() {
-            return Some(((protocol, model), answer));
-        }
-        if is_nearest {
-            nearest = Some(((protocol, model), answer));
+    let mut nearest: Option<(Device<'a>, Unrecognised)> = None;
+    for &device in devices {
+        match interpret::decode(device.0, device.1, frame) {
+            Ok(decoded) => return Some((device, Ok(decoded))),
+            Err(other) => {
+                // The tests are counted in their order.
+                let is_nearer = |(_, known): &(_, Unrecognised)| other.problem as u8 > known.problem as u8;
+                if nearest.as_ref().is_none_or(is_nearer) {
+                    nearest = Some((device, other));
+                }
+            }
         }
     }
-    nearest
-}
-
-/// Returns how many tests a frame passes, which is more if all are passed.
-fn passed(answer: &Result<Decoded, Unrecognised>) -> u8 {
-    answer.as_ref().map_or_else(|unrecognised| unrecognised.problem as u8, |_| u8::MAX)
+    nearest.map(|(device, unrecognised)| (device, Err(unrecognised)))
 }

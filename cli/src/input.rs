@@ -276,9 +276,10 @@ impl Part {
         self.bytes.len()
     }
 
-    /// Does `work` on each line, and returns what it writes, with the complaints about what it refuses.
-    pub fn work(self, mut work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<(), String>) -> Written {
-        let mut written = Written::default();
+    /// Does `work` on each line, and returns what it writes, with the complaints about what it refuses. `text` is an
+    /// empty buffer to write into.
+    pub fn work(self, text: Vec<u8>, mut work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<(), String>) -> Written {
+        let mut written = Written { text, complaints: Vec::new() };
         // To test the whole at once costs much less than to test line by line.
         let text = str::from_utf8(&self.bytes).ok();
         for (place, number) in lines(&self.bytes).zip(self.number + 1..) {
@@ -295,7 +296,6 @@ impl Part {
 }
 
 /// What was written about a part.
-#[derive(Default)]
 pub struct Written {
     pub text: Vec<u8>,
     /// Complaints, and how many bytes of the text come before each.
@@ -368,7 +368,7 @@ mod tests {
             let mut input = Input::new(Path::new("test"), Box::new(io::Cursor::new(text.clone())));
             let (mut found, mut parts) = (Vec::new(), 0);
             while let Ok(Some(part)) = input.next_part() {
-                part.work(|_, line| {
+                part.work(Vec::new(), |_, line| {
                     found.push((line.number, line.text.map(str::to_owned)));
                     Ok(())
                 });
@@ -383,7 +383,7 @@ mod tests {
     fn complaints_about_a_part_stand_where_they_came() {
         let mut input = Input::new(Path::new("test"), Box::new(io::Cursor::new(b"a\nbad\nb\n".to_vec())));
         let part = input.next_part().expect("memory is read").expect("it has lines");
-        let written = part.work(|out, line| match line.text? {
+        let written = part.work(Vec::new(), |out, line| match line.text? {
             "bad" => Err("it is bad".to_owned()),
             text => {
                 out.extend_from_slice(text.as_bytes());

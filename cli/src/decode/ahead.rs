@@ -32,10 +32,11 @@ pub fn decode(
     work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<(), String> + Sync,
 ) -> Result<Finish, Failure> {
     let mut input = input.watched();
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let run = |part: Part, mut state: State| {
+    // One part more than cores: none is idle while a part is written.
+    let parts = thread::available_parallelism().map_or(1, usize::from) + 1;
+    let run = |part: Part, mut state: State, text: Vec<u8>| {
         let mut counts = Counts::default();
-        let written = part.work(|out, line| work(&mut state, &mut counts, out, line));
+        let written = part.work(text, |out, line| work(&mut state, &mut counts, out, line));
         Done { written, state, counts }
     };
     let run = &run;
@@ -44,22 +45,28 @@ pub fn decode(
         // Each state that is not like the one before it has a number.
         let mut version = 0;
         let mut ahead = VecDeque::new();
+        // A buffer that was written to before costs no page faults.
+        let mut buffers = Vec::new();
         loop {
-            let most = if state.is_like(state) { cores } else { 1 };
+            let most = if state.is_like(state) { parts } else { 1 };
             while !is_read && ahead.len() < most {
                 match input.next_part() {
                     Ok(Some(part)) => {
                         let (again, start) = (part.clone(), state.clone());
-                        ahead.push_back((again, version, scope.spawn(move || run(part, start))));
+                        let text = buffers.pop().unwrap_or_default();
+                        ahead.push_back((again, version, scope.spawn(move || run(part, start, text))));
                     }
                     Ok(None) => is_read = true,
                     Err(error) => (is_read, failure) = (true, Some(error)),
                 }
             }
             let Some((part, begun, thread)) = ahead.pop_front() else { break };
-            let done = thread.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked));
+            let mut done = thread.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked));
             let length = part.length();
-            let done = if begun == version { done } else { run(part, state.clone()) };
+            if begun != version {
+                done.written.text.clear();
+                done = run(part, state.clone(), done.written.text);
+            }
             if deliver(&mut input, out, &done.written)? == Finish::Errors {
                 finish = Finish::Errors;
             }
@@ -67,6 +74,8 @@ pub fn decode(
             version += u64::from(!state.is_like(&done.state));
             *state = done.state;
             counts.join(done.counts);
+            done.written.text.clear();
+            buffers.push(done.written.text);
         }
         failure.map_or(Ok(finish), Err)
     })
