@@ -10,12 +10,6 @@ const NARROWEST: usize = 40;
 const WIDEST: usize = 80;
 const GAP: &str = "  ";
 
-/// What fills up the widest cell, and the gap behind it.
-const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST + GAP.len()]) {
-    Ok(blanks) => blanks,
-    Err(_) => "",
-};
-
 /// The columns of a table.
 #[derive(Clone)]
 pub struct Columns {
@@ -36,7 +30,7 @@ impl Columns {
         for (column, cell) in self.widths.iter_mut().zip(cells) {
             // There are at least as many bytes as characters.
             if cell.len() > *column {
-                *column = (*column).max(width(cell)).min(WIDEST);
+                *column = (*column).max(width(cell.as_bytes())).min(WIDEST);
             }
         }
     }
@@ -46,26 +40,39 @@ impl Columns {
         self.widths == other.widths
     }
 
-    /// Begins a row behind a text, with its cells. What is added to it stands in the last column.
-    pub fn row<'a>(&self, text: &'a mut String, cells: &[&str]) -> Lines<'a> {
+    /// Begins a row behind a text, with its cells, and makes room for them. What is added to it stands in the last
+    /// column.
+    pub fn row<'a>(&mut self, text: &'a mut Vec<u8>, cells: &[&str]) -> Lines<'a> {
         let line = text.len();
-        for (column, cell) in self.widths.iter().zip(cells) {
-            text.push_str(cell);
-            text.push_str(&BLANKS[..column.saturating_sub(width(cell)) + GAP.len()]);
+        // To write into blanks costs less than to add cells and blanks by turns.
+        text.resize(line + self.left() + cells.iter().map(|cell| cell.len()).sum::<usize>(), b' ');
+        let mut first = line;
+        for (column, cell) in self.widths.iter_mut().zip(cells) {
+            let width = width(cell.as_bytes());
+            *column = (*column).max(width.min(WIDEST));
+            text[first..first + cell.len()].copy_from_slice(cell.as_bytes());
+            first += cell.len() + column.saturating_sub(width) + GAP.len();
         }
-        let left = self.widths.iter().map(|width| width + GAP.len()).sum();
-        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first: text.len(), width: None, text }
+        text.truncate(first);
+        let left = self.left();
+        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first, width: None, text }
+    }
+
+    /// Returns the width of the columns before the last one.
+    fn left(&self) -> usize {
+        self.widths.iter().map(|width| width + GAP.len()).sum()
     }
 }
 
 /// Returns the number of characters of a text.
-fn width(text: &str) -> usize {
-    if text.is_ascii() { text.len() } else { text.chars().count() }
+fn width(text: &[u8]) -> usize {
+    let begins = |byte: &&u8| **byte & 0xC0 != 0x80;
+    if text.is_ascii() { text.len() } else { text.iter().filter(begins).count() }
 }
 
 /// A row whose last column is filled item by item.
 pub struct Lines<'a> {
-    text: &'a mut String,
+    text: &'a mut Vec<u8>,
     /// The width of the columns before the last one.
     left: usize,
     /// The width of the last column.
@@ -82,10 +89,10 @@ impl Lines<'_> {
     /// Adds an item to the last line, or a new line if it would become wider than the column.
     pub fn add(&mut self, item: &str, separator: &str) {
         if let Some(line) = &mut self.width {
-            *line += width(separator);
-            self.text.push_str(separator);
+            *line += width(separator.as_bytes());
+            self.text.extend_from_slice(separator.as_bytes());
         }
-        self.place(self.room, |text| text.push_str(item));
+        self.place(self.room, |text| text.extend_from_slice(item.as_bytes()));
     }
 
     /// Adds the words of a sentence, which begins a line.
@@ -95,11 +102,11 @@ impl Lines<'_> {
     }
 
     /// Adds an item that `write` writes and ends with a blank. Only that may stand beyond the column.
-    pub fn add_by(&mut self, write: impl FnOnce(&mut String)) {
+    pub fn add_by(&mut self, write: impl FnOnce(&mut Vec<u8>)) {
         self.place(self.room + 1, write);
     }
 
-    fn place(&mut self, room: usize, write: impl FnOnce(&mut String)) {
+    fn place(&mut self, room: usize, write: impl FnOnce(&mut Vec<u8>)) {
         let start = self.text.len();
         write(self.text);
         let item = width(&self.text[start..]);
@@ -114,21 +121,16 @@ impl Lines<'_> {
     fn begin_line(&mut self, start: usize, width: usize) {
         let item = self.text.split_off(start);
         self.end_line();
-        let mut left = self.left;
-        while left > 0 {
-            let count = left.min(BLANKS.len());
-            self.text.push_str(&BLANKS[..count]);
-            left -= count;
-        }
-        self.text.push_str(&item);
+        self.text.resize(self.text.len() + self.left, b' ');
+        self.text.extend_from_slice(&item);
         self.width = Some(width);
     }
 
     /// Ends the last line, without the blanks at its end.
     fn end_line(&mut self) {
-        let length = self.text[self.line..].trim_end().len();
+        let length = self.text[self.line..].trim_ascii_end().len();
         self.text.truncate(self.line + length);
-        self.text.push('\n');
+        self.text.push(b'\n');
         self.line = self.text.len();
     }
 
@@ -148,7 +150,7 @@ pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) 
     for row in rows {
         columns.widen(&row.cells());
     }
-    let mut text = String::new();
+    let mut text = Vec::new();
     let mut lines = columns.row(&mut text, headings);
     lines.add(last, "");
     lines.end();
@@ -157,7 +159,7 @@ pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) 
         row.last.iter().for_each(|item| lines.add(item, row.separator));
         lines.end();
     }
-    out.write_all(text.as_bytes())
+    out.write_all(&text)
 }
 
 /// A row of a table that is known as a whole.
@@ -213,11 +215,11 @@ mod tests {
 
     /// Fills a last column of some width.
     fn filled(room: usize, fill: impl FnOnce(&mut Lines)) -> String {
-        let mut text = String::new();
+        let mut text = Vec::new();
         let mut lines = Lines { room, ..Columns::new(&[]).row(&mut text, &[]) };
         fill(&mut lines);
         lines.end();
-        text
+        String::from_utf8(text).expect("columns are text")
     }
 
     #[test]
@@ -235,7 +237,7 @@ mod tests {
         let joined = |room| {
             filled(room, |lines| {
                 for item in ["aa ", "°° "] {
-                    lines.add_by(|text| text.push_str(item));
+                    lines.add_by(|text| text.extend_from_slice(item.as_bytes()));
                 }
             })
         };

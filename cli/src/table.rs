@@ -25,8 +25,6 @@ pub struct Table {
     several: bool,
     started: bool,
     row: Row,
-    /// The row, before it is written as a whole.
-    text: String,
 }
 
 /// The texts of a row that are made for it.
@@ -36,14 +34,14 @@ struct Row {
     address: String,
     message: String,
     /// What may be parted before it is added.
-    item: String,
+    item: Vec<u8>,
 }
 
 impl Table {
     /// Makes columns that the names of these protocols fit.
     pub fn new(protocols: &[Protocol]) -> Self {
         let (columns, several) = (Columns::new(&HEADINGS), protocols.len() > 1);
-        let mut table = Self { columns, several, started: false, row: Row::default(), text: String::new() };
+        let mut table = Self { columns, several, started: false, row: Row::default() };
         for protocol in protocols {
             table.make_room(protocol);
         }
@@ -75,26 +73,24 @@ impl Table {
 
     /// Writes a frame as a row, with its notes below.
     pub fn write(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
-        let Self { columns, several, started, row, text } = self;
-        text.clear();
+        let Self { columns, several, started, row } = self;
         row.identifier.clear();
         log::write_identifier(&mut row.identifier, outcome.frame);
         let access = row.name(outcome, several.then_some(outcome.protocol));
         let identifier = str::from_utf8(&row.identifier).unwrap_or_default();
         let time = outcome.time.unwrap_or_default();
         let cells = [time, outcome.channel.unwrap_or(""), identifier, &row.address, access, &row.message];
-        columns.widen(&cells);
         if !*started {
+            columns.widen(&cells);
             columns.widen(&[&grown(time)]);
-            let mut lines = columns.row(text, &HEADINGS);
+            let mut lines = columns.row(out, &HEADINGS);
             lines.add("SIGNALS", "");
             lines.end();
             *started = true;
         }
-        let mut lines = columns.row(text, &cells);
+        let mut lines = columns.row(out, &cells);
         signals(&mut lines, &mut row.item, outcome);
         lines.end();
-        out.extend_from_slice(text.as_bytes());
     }
 }
 
@@ -172,35 +168,35 @@ pub fn others(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
 }
 
 /// Adds the items of the last column. `item` is room to write in.
-fn signals(lines: &mut Lines<'_>, item: &mut String, outcome: &Outcome<'_>) {
+fn signals(lines: &mut Lines<'_>, item: &mut Vec<u8>, outcome: &Outcome<'_>) {
     match outcome.decoded {
-        Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded),
+        Ok(decoded) if decoded.is_error_reply() => refusal(lines, outcome, decoded),
         Ok(decoded) => {
             for (name, value) in open_selectors(outcome.protocol, decoded) {
-                lines.add_by(|text| text.extend([name, " ", &value, GAP]));
+                lines.add_by(|text| push(text, [name, " ", &value, GAP]));
             }
             let content = decoded.content(outcome.protocol);
             for (name, field) in fields(content, decoded) {
-                let add = |text: &mut String| {
-                    text.push_str(name);
-                    text.push(' ');
+                let add = |text: &mut Vec<u8>| {
+                    push(text, [name, " "]);
                     match field {
                         Field::Signal(read) => add_signal(text, outcome.protocol, read),
                         Field::Array(id) => array(text, outcome.protocol, &elements(content, decoded, id)),
                     }
-                    text.push_str(GAP);
+                    push(text, [GAP]);
                 };
                 if may_be_parted(&field) {
                     item.clear();
                     add(item);
-                    item.split_inclusive(", ").for_each(|piece| lines.add_by(|text| text.push_str(piece)));
+                    let pieces = str::from_utf8(item).unwrap_or_default().split_inclusive(", ");
+                    pieces.for_each(|piece| lines.add_by(|text| push(text, [piece])));
                 } else {
                     lines.add_by(add);
                 }
             }
-            decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text));
+            decoded.notes.iter().for_each(|note| remark(lines, note.rule.name(), &note.text));
             if let Some(text) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
-                remark(lines, item, "incomplete", text);
+                remark(lines, "incomplete", text);
             }
         }
         Err(Unrecognised { problem, text, .. }) => {
@@ -226,19 +222,17 @@ fn open_selectors<'a>(protocol: &'a Protocol, decoded: &'a Decoded) -> impl Iter
 }
 
 /// Adds the data of a frame that reports an error in place of its values, and why.
-fn refusal(lines: &mut Lines<'_>, item: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
+fn refusal(lines: &mut Lines<'_>, outcome: &Outcome<'_>, decoded: &Decoded) {
     let what = if decoded.kind == Kind::Reply { "refused" } else { "in error" };
     let data = log::hexadecimal(&outcome.frame.data);
     let separator = if data.is_empty() { "" } else { ", data " };
     lines.add(&format!("{what}{separator}{data}"), "");
     let notes = decoded.notes.iter().filter(|note| !note.is_about_value());
-    notes.for_each(|note| remark(lines, item, note.rule.name(), &note.text));
+    notes.for_each(|note| remark(lines, note.rule.name(), &note.text));
 }
 
-fn remark(lines: &mut Lines<'_>, item: &mut String, rule: &str, text: &str) {
-    item.clear();
-    item.extend(["! ", rule, ": ", text]);
-    lines.add_sentence(item);
+fn remark(lines: &mut Lines<'_>, rule: &str, text: &str) {
+    lines.add_sentence(&format!("! {rule}: {text}"));
 }
 
 /// Tests whether values may be long, so that they are parted after a comma.
@@ -250,23 +244,23 @@ fn may_be_parted(field: &Field) -> bool {
 }
 
 /// Adds the value of a signal, and its unit.
-fn add_signal(text: &mut String, protocol: &Protocol, (signal, reading): Read) {
+fn add_signal(text: &mut Vec<u8>, protocol: &Protocol, (signal, reading): Read) {
     value::write(text, protocol, signal, reading);
     unit(text, (signal, reading));
 }
 
 /// Adds the values of an array in brackets, and their unit once.
-fn array(text: &mut String, protocol: &Protocol, elements: &[Option<Read>]) {
+fn array(text: &mut Vec<u8>, protocol: &Protocol, elements: &[Option<Read>]) {
     let mut separator = "[";
     for element in elements {
-        text.push_str(separator);
+        push(text, [separator]);
         match element {
             Some((signal, reading)) => value::write(text, protocol, signal, reading),
-            None => text.push('-'),
+            None => text.push(b'-'),
         }
         separator = ", ";
     }
-    text.push(']');
+    text.push(b']');
     let is_number = |(_, reading): &&Read| matches!(reading.value, Value::Integer(_) | Value::Number(_));
     if let Some(read) = elements.iter().flatten().find(is_number) {
         unit(text, *read);
@@ -274,9 +268,15 @@ fn array(text: &mut String, protocol: &Protocol, elements: &[Option<Read>]) {
 }
 
 /// Adds the unit of a number.
-fn unit(text: &mut String, (signal, reading): Read) {
+fn unit(text: &mut Vec<u8>, (signal, reading): Read) {
     if let (Value::Integer(_) | Value::Number(_), Some(unit)) = (&reading.value, signal.unit) {
-        text.push(' ');
-        text.push_str(&unit.symbol);
+        push(text, [" ", &unit.symbol]);
+    }
+}
+
+/// Adds texts one behind the other.
+fn push<const N: usize>(text: &mut Vec<u8>, parts: [&str; N]) {
+    for part in parts {
+        text.extend_from_slice(part.as_bytes());
     }
 }

@@ -1,6 +1,6 @@
 //! Values as people read them in a table; JSON has the exact ones.
 
-use std::fmt::{self, Write};
+use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Reading, Value, escape};
 use canspec_codegen::model::{Linear, Protocol, Signal};
@@ -12,17 +12,17 @@ use crate::log;
 const MOST_DECIMALS: usize = 18;
 
 /// Adds the value of a signal, without its unit, to a text.
-pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &Reading) {
+pub fn write(text: &mut Vec<u8>, protocol: &Protocol, signal: &Signal, reading: &Reading) {
     let _ = match &reading.value {
         Value::None if signal.run.is_some() => write!(text, "? (raw 0x{})", log::hexadecimal(&reading.bytes)),
         Value::None => write!(text, "? (raw 0x{:X})", reading.bits),
-        Value::Integer(number) => text.write_str(itoa::Buffer::new().format(*number)),
+        Value::Integer(number) => text.write_all(itoa::Buffer::new().format(*number).as_bytes()),
         Value::Number(number) => match signal.encoding.linear() {
             Some(linear) => fixed(text, *number, decimals(&linear)),
             None => single(text, *number),
         },
-        Value::Name(name) => text.write_str(name),
-        Value::Text(value) => text.write_str(&escape::written(value)),
+        Value::Name(name) => text.write_all(name.as_bytes()),
+        Value::Text(value) => text.write_all(escape::written(value).as_bytes()),
         Value::Status { set, unknown } => status(text, bit_names(protocol, signal, *set), *unknown),
     };
 }
@@ -31,7 +31,7 @@ pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &
 ///
 /// Values lie on the grid of their scale. So a value is nearly always next to a whole number of its last decimal, as
 /// an integer, which is cheap to write.
-fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
+fn fixed(text: &mut Vec<u8>, number: f64, decimals: usize) -> io::Result<()> {
     /// 2 to the power of 50.
     const EXACT: f64 = 1_125_899_906_842_624.0;
     #[expect(clippy::cast_precision_loss, reason = "a double has these powers of ten")]
@@ -50,7 +50,7 @@ fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
 const POWERS: [i64; 10] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
 
 /// Writes a number of units of the last decimal.
-fn digits(text: &mut String, is_negative: bool, number: u64, decimals: usize) -> fmt::Result {
+fn digits(text: &mut Vec<u8>, is_negative: bool, number: u64, decimals: usize) -> io::Result<()> {
     let mut digits = [b'0'; 24];
     let (mut rest, mut start) = (number, digits.len());
     let mut put = |byte: u8| {
@@ -70,7 +70,7 @@ fn digits(text: &mut String, is_negative: bool, number: u64, decimals: usize) ->
     if is_negative {
         put(b'-');
     }
-    text.write_str(str::from_utf8(&digits[start..]).unwrap_or_default())
+    text.write_all(&digits[start..])
 }
 
 /// Returns the fewest decimals with which each value still leads back to its own raw number.
@@ -95,21 +95,22 @@ fn decimals(linear: &Linear) -> usize {
 
 /// Writes the shortest text of a number that came as an `f32`.
 #[expect(clippy::cast_possible_truncation, reason = "it was an `f32` on the bus")]
-fn single(text: &mut String, number: f64) -> fmt::Result {
+fn single(text: &mut Vec<u8>, number: f64) -> io::Result<()> {
     write!(text, "{:?}", number as f32)
 }
 
-fn status<'a>(text: &mut String, set: impl Iterator<Item = &'a str>, unknown: u64) -> fmt::Result {
+fn status<'a>(text: &mut Vec<u8>, set: impl Iterator<Item = &'a str>, unknown: u64) -> io::Result<()> {
     let mut separator = "{";
     for name in set {
-        text.extend([separator, name]);
+        text.extend_from_slice(separator.as_bytes());
+        text.extend_from_slice(name.as_bytes());
         separator = ", ";
     }
     if unknown != 0 {
         write!(text, "{separator}0x{unknown:X}")?;
         separator = ", ";
     }
-    text.write_str(if separator == "{" { "{}" } else { "}" })
+    text.write_all(if separator == "{" { b"{}" } else { b"}" })
 }
 
 #[cfg(test)]
@@ -159,8 +160,9 @@ mod tests {
                 if !matches!(value, Value::Integer(_) | Value::Number(_)) {
                     continue;
                 }
-                let mut text = String::new();
+                let mut text = Vec::new();
                 write(&mut text, protocol, signal, &Reading::of(protocol, (id, signal), bits));
+                let text = String::from_utf8(text).expect("a value is text");
                 let found = back(protocol, message, signal, &text);
                 assert_eq!(found, Some(bits), "{}.{}.{}: {text}", protocol.name, message.name, signal.name);
                 numbers += 1;
@@ -193,9 +195,9 @@ mod tests {
         let edges = [0.0, 0.05, 0.45, 0.999_95, 1e15, 1_125_899_906_842.625, 1e17, 1e300, f64::INFINITY, f64::NAN];
         for number in steps.chain(ties).chain(edges).flat_map(|number| [number, -number]) {
             for decimals in [0, 1, 2, 3, 4, 9, 10, 12] {
-                let mut text = String::new();
-                fixed(&mut text, number, decimals).expect("a string takes everything");
-                assert_eq!(text, format!("{number:.decimals$}"), "{number:?} {decimals}");
+                let mut text = Vec::new();
+                fixed(&mut text, number, decimals).expect("a vector takes everything");
+                assert_eq!(String::from_utf8(text), Ok(format!("{number:.decimals$}")), "{number:?} {decimals}");
             }
         }
     }

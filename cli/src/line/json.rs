@@ -83,13 +83,19 @@ pub fn name(out: &mut Vec<u8>, name: &str) {
     out.push(b'"');
 }
 
-/// Writes a number that is not below 0. Most have one digit.
+/// Writes a number that is not below 0. Most have few digits.
 pub fn natural(out: &mut Vec<u8>, value: impl Into<u64>) {
     let value = value.into();
-    match u8::try_from(value) {
-        Ok(digit @ 0..10) => out.push(b'0' + digit),
-        _ => out.extend_from_slice(itoa::Buffer::new().format(value).as_bytes()),
+    let Ok(byte) = u8::try_from(value) else {
+        return out.extend_from_slice(itoa::Buffer::new().format(value).as_bytes());
+    };
+    if byte >= 100 {
+        out.push(b'0' + byte / 100);
     }
+    if byte >= 10 {
+        out.push(b'0' + byte / 10 % 10);
+    }
+    out.push(b'0' + byte % 10);
 }
 
 /// Writes an integer, which nearly always fits into 64 bits.
