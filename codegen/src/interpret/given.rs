@@ -23,7 +23,7 @@ impl Given {
     ///
     /// # Errors
     ///
-    /// Refuses a name that is given twice, a field that the message or its address decides, and a value that the field
+    /// Refuses a field that is given twice, a field that the message or its address decides, and a value that the field
     /// cannot have.
     pub fn of(
         protocol: &Protocol,
@@ -31,12 +31,13 @@ impl Given {
         pattern: &AddressPattern,
         given: Vec<(String, String)>,
     ) -> Result<Self, Refusal> {
-        if let Some(name) = twice(&given) {
+        let is_signal = |name: &str| message.signals.iter().any(|signal| signal.name == name);
+        if let Some(name) = twice(&given).filter(|name| !is_signal(name)) {
             return Err(refuse(message, &format!("`{name}` is given twice")));
         }
         let mut sorted = Self { signals: Vec::new(), selectors: Vec::new(), fields: Vec::new() };
         for (name, text) in given {
-            let is_signal = message.signals.iter().any(|signal| signal.name == name);
+            let is_signal = is_signal(&name);
             let selector = layout.selectors.iter().find(|id| protocol[**id].name == name);
             let field = protocol.identifier.fields.entries().find(|(_, field)| field.name == name);
             match (selector.map(|id| (*id, &protocol[*id])), field) {
