@@ -100,7 +100,7 @@ struct Message {
 
 enum Value {
     Whole(i64, &'static str),
-    /// A number of units of the last decimal, of which there are so many.
+    /// A number with that many decimals, as a whole number of its last decimal.
     Fixed {
         raw: u32,
         decimals: u32,

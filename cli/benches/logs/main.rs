@@ -21,7 +21,7 @@ const LINES: u32 = 1_000_000;
 /// Lines of the logs whose difference shows what a line costs.
 const COUNTED: [u32; 2] = [20_000, 60_000];
 
-/// The fastest of so many runs counts, since the machine may have other work, too.
+/// Runs of a program. The fastest counts, since the machine may have other work, too.
 const RUNS: usize = 5;
 
 fn main() -> io::Result<()> {
