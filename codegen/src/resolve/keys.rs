@@ -127,11 +127,10 @@ impl Role {
             Key::Normal | Key::Starting | Key::Continues => among(&[Self::Identifier, Self::Header]),
             Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::Bytes, Self::OfModel]),
             Key::OutOfRange => among(QUANTITIES),
-            Key::PowerOff => signal || among(RUNS) || self == Self::Packed,
             Key::Outside | Key::Examples => self == Self::Address,
             Key::Reply => signal || among(RUNS) || among(&[Self::Word, Self::Packed]),
             Key::In => signal || among(RUNS) || among(&[Self::Constant, Self::Packed]),
-            Key::Models => signal || among(RUNS) || self == Self::Packed,
+            Key::PowerOff | Key::Models => signal || among(RUNS) || self == Self::Packed,
         }
     }
 

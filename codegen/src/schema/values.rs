@@ -91,8 +91,9 @@ fn of_field(key: Key) -> Demand {
         Key::Bytes => Demand::Form(BYTES),
         Key::Bits => Demand::Form(PLACE),
         Key::Repeat => Demand::Form(Form { message: "Write `3`, or `1..48` in a message of parts.", ..PLACE }),
-        Key::Step | Key::First => Demand::Form(NUMBER),
-        Key::Fill
+        Key::Step
+        | Key::First
+        | Key::Fill
         | Key::Scale
         | Key::Offset
         | Key::Const

@@ -221,7 +221,7 @@ impl SetPath {
         }
         let (mut inside, mut outside) = (legal, value);
         while inside.abs_diff(outside) > 1 {
-            let middle = i32::midpoint(inside, outside);
+            let middle = (inside & outside).wrapping_add((inside ^ outside).wrapping_shr(1));
             if may_be_set(middle) { inside = middle } else { outside = middle }
         }
         inside

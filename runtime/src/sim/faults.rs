@@ -58,7 +58,7 @@ impl Faults {
         let restarts = random.chance(25).then(|| random.below(end));
         let dies = random.chance(12).then(|| random.below(end));
         let is_mute_at_start = random.chance(50);
-        let failing = Self { restarts, dies, is_mute_at_start, ..Self::NONE };
+        let failing = Self { is_mute_at_start, restarts, dies, ..Self::NONE };
         Self { deaf, lost, twice, broken, disguised, refused, drifted, ..failing }
     }
 }
