@@ -5611,6 +5611,7 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 /// A frame that answers a request.
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Message {
     /// Recognises a frame.
     /// # Errors

@@ -19,7 +19,8 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
     let functions = functions(plan);
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(plan, first);
-    let further = functions.iter().flat_map(|parts| parts.iter().skip(1));
+    let further: Vec<_> = functions.iter().flat_map(|parts| parts.iter().skip(1)).collect();
+    let inlines = (!further.is_empty()).then(inlines);
     let decoding = quote! {
         #definition
 
@@ -32,6 +33,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
         /// A frame that answers a request.
         pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
+        #inlines
         impl Message {
             /// Recognises a frame.
             /// # Errors
@@ -141,7 +143,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
     let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     let recognises = [&plan.requests, &plan.replies, &plan.either].into_iter().any(Option::is_some);
-    let inlines = recognises.then(|| quote!(#[expect(clippy::inline_always, reason = "only decoding calls them")]));
+    let inlines = recognises.then(inlines);
     quote! {
         #inlines
         impl Protocol for Message {
@@ -160,6 +162,11 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             #(#functions)*
         }
     }
+}
+
+/// Says that some functions always become part of their caller.
+fn inlines() -> TokenStream {
+    quote!(#[expect(clippy::inline_always, reason = "only decoding calls them")])
 }
 
 /// Names what is true of the protocol, and not of every one.
