@@ -157,19 +157,24 @@ fn condition(test: &Test) -> TokenStream {
 }
 
 fn all(tests: &[Comparison]) -> TokenStream {
-    let tests = tests.iter().map(comparison);
-    if tests.len() == 0 { quote!(true) } else { quote!(#(#tests)&&*) }
-}
-
-fn comparison(Comparison { place, inside, ranges }: &Comparison) -> TokenStream {
-    let value = place.as_ref().map_or_else(|| quote!(id), |place| quote!(Self::#place.of(id)));
-    is_among(&value, ranges, *inside)
+    match tests {
+        [] => quote!(true),
+        [only] => comparison(only),
+        several => {
+            let tests = several.iter().map(|test| {
+                let (is_choice, test) = (test.inside && test.ranges.len() > 1, comparison(test));
+                if is_choice { quote!((#test)) } else { test }
+            });
+            quote!(#(#tests)&&*)
+        }
+    }
 }
 
 /// Tests whether a value lies inside one of the ranges, or outside all.
-fn is_among(value: &TokenStream, ranges: &[Range], inside: bool) -> TokenStream {
-    let tests = ranges.iter().map(|range| in_range(value, range, inside));
-    if inside && ranges.len() > 1 { quote!((#(#tests)||*)) } else { quote!(#(#tests)&&*) }
+fn comparison(Comparison { place, inside, ranges }: &Comparison) -> TokenStream {
+    let value = place.as_ref().map_or_else(|| quote!(id), |place| quote!(Self::#place.of(id)));
+    let tests = ranges.iter().map(|range| in_range(&value, range, *inside));
+    if *inside { quote!(#(#tests)||*) } else { quote!(#(#tests)&&*) }
 }
 
 /// Tests whether a value lies inside a range, or outside.
