@@ -65,7 +65,7 @@ impl Resolver<'_> {
 
     fn constant(&mut self, path: &Path, name: &str, values: &[String], identifier: &Identifier) -> Option<Constant> {
         let selector = self.selector(path, name, identifier)?;
-        let place = self.tables.selectors[selector].place;
+        let Selector { place, normal, continues, .. } = self.tables.selectors[selector];
         let greatest = match place {
             SelectorPlace::Identifier(field) => u64::from(u32::MAX >> (32 - identifier.fields[field].width)),
             SelectorPlace::Payload(place) => place.max(),
@@ -76,6 +76,17 @@ impl Resolver<'_> {
             numbers.push(self.integer(&at, text, 0, greatest)?);
         }
         let (value, open) = self.alternatives(path, (name, place), &numbers)?;
+        let tells = [(Key::Normal, normal), (Key::Continues, continues)].into_iter().find(|(_, value)| value.is_some());
+        if let Some((key, _)) = tells.filter(|_| open != 0) {
+            let text = format!("`{name}` has `{}`, so it can have no list of values", key.name());
+            self.error_with_help(
+                &rules::MATCH,
+                path.at_value(),
+                text,
+                "take the list out; the field may then have any value",
+            );
+            return None;
+        }
         Some(Constant { selector, place, value, open })
     }
 
