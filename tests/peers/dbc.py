@@ -44,8 +44,8 @@ class Protocol:
         report = run(*export, "--report")
         # Signals in decimal digits, whose bits are all that a DBC has.
         self.decimal = set(re.findall(r"`(\S+)` is in decimal digits", report))
-        # Kinds of frames that nothing in the mask tells from others, so the DBC has the others alone.
-        self.missing = set(re.findall(r"`(\S+)` \((\w+) to (\w+)\) is missing in", report))
+        # Messages, or kinds of their frames, that nothing in the mask tells from others, so the DBC has the others alone.
+        self.missing = set(re.findall(r"`(\S+)`(?: \((\w+) to (\w+)\))? is missing in", report))
         mask = int(re.search("mask (0x[0-9A-F]+)", report)[1], 16)
         self.database = cantools.database.load_string(run(*export), "dbc", frame_id_mask=mask, strict=True)
 
@@ -61,7 +61,8 @@ class Protocol:
 
     def holds(self, frame):
         """Tests whether the DBC has such frames."""
-        return (frame["message"], frame["kind"], frame["access"]) not in self.missing
+        kind = (frame["message"], frame["kind"], frame["access"])
+        return self.missing.isdisjoint([kind, (frame["message"], "", "")])
 
     def signals(self, frame):
         """Returns the signals of a frame, with elements in place of arrays."""
@@ -271,7 +272,7 @@ def compared(canspec, random_frames, spec):
     others = protocol.decode(run(random_frames, "known", spec, COUNT * 21 // 20, 2).splitlines())
     sets, encoded, wrong = encoding(protocol, list(filter(protocol.holds, others)), random.Random(3))
     few = Protocol(canspec, spec, "--nodes", NODES.get(Path(spec).stem, "0-3"))
-    found = [frame for frame in frames if few.message(frame)]
+    found = [frame for frame in frames if few.message(frame) and few.holds(frame)]
     of_nodes, astray = decoding(few, found)
     print(
         f"{Path(spec).stem:<15} {len(documented):3} examples and {len(frames) - len(documented)} frames,"
