@@ -91,9 +91,8 @@ fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &D
     let departures = frames.map(|frame| &frame.constants).chain(of_set).map(|constants| {
         let found = constants.iter().filter_map(|constant| {
             let found = value_of(protocol, reply, constant.selector).filter(|found| !constant.admits(*found))?;
-            let wanted: Vec<_> = constant.values().map(|value| format!("{value:#04X}")).collect();
-            let name = &protocol[constant.selector].name;
-            Some(format!("`{name}` is {found:#04X} here, and {} in an answer", wanted.join(" or ")))
+            let (name, wanted) = (&protocol[constant.selector].name, constant.text());
+            Some(format!("`{name}` is {found:#04X} here, and {wanted} in an answer"))
         });
         found.collect::<Vec<_>>()
     });

@@ -5,7 +5,8 @@ use canspec_runtime::Place;
 use super::Refusal;
 use super::encode::{refuse, twice};
 use crate::model::{
-    AddressPattern, EnumerationId, FieldId, FrameLayout, IdentifierField, Message, Protocol, SelectorPlace,
+    AddressPattern, EnumerationId, FieldId, FrameLayout, IdentifierField, Message, Protocol, Selector, SelectorId,
+    SelectorPlace,
 };
 use crate::number::Rational;
 
@@ -18,8 +19,8 @@ pub struct Given {
 }
 
 impl Given {
-    /// Sorts what a call gives. A signal comes before a field of the header, and that before one of the identifier. What is
-    /// none of these is left among the signals.
+    /// Sorts what a call gives. A signal comes before a field of the header, and that before one of the identifier.
+    /// What is none of these is left among the signals.
     ///
     /// # Errors
     ///
@@ -37,33 +38,24 @@ impl Given {
         }
         let mut sorted = Self { signals: Vec::new(), selectors: Vec::new(), fields: Vec::new() };
         for (name, text) in given {
-            let is_signal = is_signal(&name);
-            let selector = layout.selectors.iter().find(|id| protocol[**id].name == name);
-            let field = protocol.identifier.fields.entries().find(|(_, field)| field.name == name);
-            match (selector.map(|id| (*id, &protocol[*id])), field) {
-                (Some((_, known)), _) if !is_signal && known.continues.is_some() => {
+            let mut in_header = layout.selectors.iter().filter_map(|id| match protocol[*id].place {
+                SelectorPlace::Payload(place) => Some((*id, place)).filter(|_| protocol[*id].name == name),
+                SelectorPlace::Identifier(_) => None,
+            });
+            if is_signal(&name) {
+                sorted.signals.push((name, text));
+            } else if let Some((id, place)) = in_header.next() {
+                sorted.selectors.push((place, selected(protocol, (message, layout), (id, place), &text)?));
+            } else if let Some((id, field)) = protocol.identifier.fields.entries().find(|(_, field)| field.name == name)
+            {
+                if is_decided(protocol, layout, pattern, (id, field)) {
                     return Err(decided(message, &name));
                 }
-                (Some((id, known)), _) if !is_signal => {
-                    let SelectorPlace::Payload(place) = known.place else { continue };
-                    let value = raw(protocol, message, &name, (&text, known.enumeration), place.max())?;
-                    let constant = layout.constants.iter().find(|constant| constant.selector == id);
-                    if let Some(constant) = constant.filter(|constant| !constant.admits(value)) {
-                        let values: Vec<_> = constant.values().map(|value| format!("{value:#04X}")).collect();
-                        let text = format!("`{name}` is {value:#04X}, and in this frame it is {}", values.join(" or "));
-                        return Err(refuse(message, &text));
-                    }
-                    sorted.selectors.push((place, value));
-                }
-                (_, Some((id, known))) if !is_signal => {
-                    if is_decided(protocol, layout, pattern, (id, known)) {
-                        return Err(decided(message, &name));
-                    }
-                    let greatest = known.greatest();
-                    let value = raw(protocol, message, &name, (&text, known.enumeration), greatest.into())?;
-                    sorted.fields.push((id, u32::try_from(value).unwrap_or(greatest)));
-                }
-                _ => sorted.signals.push((name, text)),
+                let greatest = field.greatest();
+                let value = raw(protocol, message, &name, (&text, field.enumeration), greatest.into())?;
+                sorted.fields.push((id, u32::try_from(value).unwrap_or(greatest)));
+            } else {
+                sorted.signals.push((name, text));
             }
         }
         Ok(sorted)
@@ -73,6 +65,28 @@ impl Given {
     pub fn put(&self, protocol: &Protocol, id: u32, data: &mut [u8; 8]) -> u32 {
         self.selectors.iter().for_each(|(place, value)| place.put(data, *value));
         self.fields.iter().fold(id, |id, (field, value)| protocol[*field].put(id, *value))
+    }
+}
+
+/// Reads the value of a field of the header.
+fn selected(
+    protocol: &Protocol,
+    (message, layout): (&Message, &FrameLayout),
+    (id, place): (SelectorId, Place),
+    text: &str,
+) -> Result<u64, Refusal> {
+    let Selector { name, continues, enumeration, .. } = &protocol[id];
+    if continues.is_some() {
+        return Err(decided(message, name));
+    }
+    let value = raw(protocol, message, name, (text, *enumeration), place.max())?;
+    let constant = layout.constants.iter().find(|constant| constant.selector == id);
+    match constant.filter(|constant| !constant.admits(value)) {
+        Some(constant) => {
+            let text = format!("`{name}` is {value:#04X}, and in this frame it is {}", constant.text());
+            Err(refuse(message, &text))
+        }
+        None => Ok(value),
     }
 }
 

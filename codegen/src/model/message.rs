@@ -226,6 +226,11 @@ impl Constant {
         submasks(self.open).map(move |bits| value | bits)
     }
 
+    /// Shows the values that the selector can have: `0x43 or 0x4B`.
+    pub(crate) fn text(&self) -> String {
+        self.values().map(|value| format!("{value:#04X}")).collect::<Vec<_>>().join(" or ")
+    }
+
     /// Returns the field of the identifier and its value, if it stands there.
     pub fn in_identifier(&self) -> Option<(FieldId, u32)> {
         match self.place {

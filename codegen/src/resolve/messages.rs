@@ -453,16 +453,11 @@ impl Resolver<'_> {
             }
             _ => format!("take `{name}` out of one of the two places, or correct one of them"),
         };
-        let [low, high] = constants.map(shown);
+        let [low, high] = constants.map(Constant::text);
         let text = format!("in a {key} by `{access}`, `{name}` would have to be both {low} and {high}");
         let diagnostic = Diagnostic::error(&rules::MATCH, first.1, text).help(help);
         self.diagnostics.push(diagnostic.other(second.1, second.0.name()));
     }
-}
-
-/// Shows the values that a constant can have.
-pub fn shown(constant: &Constant) -> String {
-    constant.values().map(|value| format!("{value:#04X}")).collect::<Vec<_>>().join(" or ")
 }
 
 /// Returns the ways in which a kind of frame is sent.

@@ -2,7 +2,7 @@
 //! travel, like an access.
 
 use super::Resolver;
-use super::messages::{Draft, Owner, Surroundings, shown};
+use super::messages::{Draft, Owner, Surroundings};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
 use crate::resolve::rules;
@@ -122,7 +122,7 @@ impl Resolver<'_> {
         let contrary = constants.iter().find_map(|one| Some((one, other(one)?)));
         let Some((one, other)) = contrary else { return };
         let name = &self.tables.selectors[one.selector].name;
-        let (value, other) = (shown(one), shown(&other));
+        let (value, other) = (one.text(), other.text());
         let text = format!("in a frame of `{}`, `{name}` would have to be both {value} and {other}", set.name);
         let position =
             self.spec.messages.get(&set.name).and_then(|set| set.members.iter().position(|name| name == member));
