@@ -14,10 +14,10 @@ use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
 use crate::model::{
-    self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, OutOfRange, Parts, Protocol, Range,
-    SignalId, Table,
+    self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, Parts, Protocol, Range, SignalId, Table,
 };
 use crate::syntax::tree::Path;
+use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
 /// A signal.
 pub struct Signal {
@@ -163,7 +163,7 @@ impl Context<'_> {
         signals.collect()
     }
 
-    /// Returns the signals of a part that a module can get. Limits hold for the whole message, so nobody changes a part.
+    /// Returns the signals of a part that a module can get. Nobody changes them, since limits hold for the whole message.
     fn kept(&self, message: &Message) -> Vec<SignalId> {
         let parts = message.long.and_then(|long| Some((long, self.protocol[long].parts()?)));
         let Some((long, Parts { number, data, .. })) = parts else { return Vec::new() };
@@ -376,14 +376,10 @@ fn least(content: &Content, signal: &model::Signal) -> String {
 /// Says what a device does with the value.
 fn conduct(signal: &model::Signal) -> impl Iterator<Item = String> {
     let Conduct { out_of_range, keeps, .. } = signal.conduct;
-    let limiting = out_of_range.map(|known| match known {
-        OutOfRange::Refused => "refused",
-        OutOfRange::Ignored => "ignored",
-        OutOfRange::Limited => "limited",
-    });
-    let keeping = keeps.map(|keeps| if keeps { "kept" } else { "lost" });
-    let limiting = limiting.map(|word| format!("{word} out of range"));
-    limiting.into_iter().chain(keeping.map(|word| format!("{word} without power")))
+    let limiting = OUT_OF_RANGE.iter().filter(move |(_, known)| Some(*known) == out_of_range);
+    let keeping = POWER_OFF.iter().filter(move |(_, known)| Some(*known) == keeps);
+    let limiting = limiting.map(|(word, _)| format!("{word} out of range"));
+    limiting.chain(keeping.map(|(word, _)| format!("{word} without power")))
 }
 
 /// Names the only device models that have a signal.
