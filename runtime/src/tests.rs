@@ -397,3 +397,12 @@ fn an_entry_of_the_list_builds_only_requests_that_carry_nothing() {
     assert!(ENTRY.request("read", To::Heater(1)).is_some_and(|request| request.is_err()));
     assert!(["set", "report", "erase"].iter().all(|access| ENTRY.request(access, To::Group(2)).is_none()));
 }
+
+#[test]
+fn a_frame_knows_the_device_model_for_which_it_was_recognised() {
+    let request = frame(0x0107_03F0, [1, 0, 0, 150]);
+    for model in 0..=u8::MAX {
+        assert_eq!(Received::<Message>::decode_for(model, &request).map(|received| received.model()), Ok(Some(model)));
+    }
+    assert_eq!(Received::<Message>::decode(&request).map(|received| received.model()), Ok(None));
+}

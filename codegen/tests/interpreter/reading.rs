@@ -1,8 +1,9 @@
 //! From frames to values.
 
-use canspec_codegen::interpret::{Problem, Value};
+use canspec_codegen::interpret::{Problem, Value, decode};
+use canspec_codegen::model::Protocol;
 
-use super::{WIDE, decoded, feature, message, model, note_texts, notes, problem, protocol, values, written};
+use super::{WIDE, decoded, feature, frame, message, model, note_texts, notes, problem, protocol, values, written};
 
 fn named(name: &str) -> Value {
     Value::Name(name.to_owned())
@@ -289,4 +290,46 @@ fn a_group_has_signals_of_its_own_wherever_it_is_used() {
     assert_eq!([value("alarms_cell_1"), value("alarms_cell_2")], [0, 1].map(|bit| Some(Value::Integer(bit))));
     assert_eq!(value("alarms_pack"), Some(Value::Name("off".to_owned())));
     assert_eq!(value("warnings_pack"), Some(Value::None));
+}
+
+/// Nothing but the addresses shows the direction.
+const UNDIRECTED: &str = r#"
+canspec: 1
+protocol: undirected
+title: Heaters
+document: {title: Made up, version: "1"}
+length: 1
+identifier: {rest: {bits: 10..8, const: 0}, target: {bits: 7..4}, source: {bits: 3..0}}
+types: {host: {range: 12..12, outside: refused, send: 12}, heater: {range: 1..9, outside: refused}}
+addressing: {one: {request: {target: heater, source: host}, one: {target: host, source: heater}}}
+access: {read: {request: {}, reply: {}, in: [reply], answers: {one: one}}}
+messages: {heat: {section: "1", access: [read], value: {bytes: 0}}}
+"#;
+
+/// Returns why a frame is not recognised, and what its identifier shows.
+fn unrecognised(protocol: &Protocol, text: &str) -> (String, Vec<u32>) {
+    let unrecognised = decode(protocol, None, &frame(text)).expect_err("no frame of the protocol");
+    (unrecognised.text, unrecognised.identifier.iter().copied().collect())
+}
+
+#[test]
+fn an_identifier_without_a_direction_names_what_no_mode_has() {
+    let undirected = written(UNDIRECTED);
+    let text = |id: &str| unrecognised(&undirected, &format!("{id}#00")).0;
+    assert_eq!(text("0A1"), "no addressing mode has target 0x0A; they have 0x01..0x09, 0x0C");
+    assert_eq!(text("09F"), "no addressing mode has source 0x0F; they have 0x01..0x09, 0x0C");
+    assert_eq!(text("000"), "no addressing mode has target 0x00; they have 0x01..0x09, 0x0C");
+    // Each address is one of some mode.
+    for id in ["011", "099", "0CC"] {
+        assert_eq!(text(id), "the addresses do not show whether it goes to a module or to the controller");
+    }
+}
+
+#[test]
+fn an_identifier_of_the_right_width_shows_its_fields() {
+    let undirected = written(UNDIRECTED);
+    let shown = |text: &str| unrecognised(&undirected, text).1;
+    assert_eq!([shown("0A1#00"), shown("1C1#00")], [[0, 10, 1], [1, 12, 1]]);
+    let other = unrecognised(&undirected, "000000A1#00");
+    assert_eq!(other, ("the identifier has 29 bits instead of 11".to_owned(), vec![]));
 }

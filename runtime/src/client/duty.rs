@@ -18,8 +18,8 @@ pub enum Output {
 /// What one module is to do, and what it says of its output.
 ///
 /// A module that was told to switch off is only off if it says so afterwards. The echo of the switch-off does not show
-/// it, and neither does what was said before that echo. So a program holds what a module must do, gives each answer to
-/// [`answered`](Self::answered), and goes on until the [`output`](Self::output) is as it should be.
+/// it, and neither does what was said before that echo. So a program goes on until the [`output`](Self::output) is as it
+/// should be. It [holds](Self::hold) what the module must do, and gives each answer to [`answered`](Self::answered).
 ///
 /// It takes 20 bytes.
 #[derive(Clone, Copy, Debug)]

@@ -1,13 +1,14 @@
 //! A client on a bus with faults, and in single situations.
 
 mod conflicts;
+mod duties;
 mod groups;
 mod health;
 mod holds;
 mod order;
 mod trial;
 
-use super::{Client, Full, Heard, Pace, Step, Ticket};
+use super::{Client, Duty, Full, Heard, Pace, Step, Ticket};
 use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
 use crate::{Frame, Problem, Protocol, Request, Time, Timing};
 use core::time::Duration;
@@ -291,6 +292,7 @@ fn a_client_takes_no_more_memory_than_its_documentation_says() {
         [size_of::<Client<Message, 0>>(), size_of::<Client<Message, 1>>(), size_of::<Client<Message, 0, 1>>()];
     // Only the pointers of a request are larger on a processor of 64 bits.
     assert!(none <= 96 && request - none <= 120 && group - none <= 112, "{none}, {request}, {group}");
+    assert!(size_of::<Duty>() <= 20);
 }
 
 #[test]

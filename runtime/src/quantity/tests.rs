@@ -1,11 +1,12 @@
 use std::string::ToString;
 
 use super::single;
+use crate::plumbing::States;
 use crate::tests::heaters::{Heat, Message, To};
 use crate::tests::random::Random;
 use crate::{
-    Error, Frame, Kind, Payload, Place, Quantities, Quantity, ReadNumber, ReadPath, Received, SetNumber, SetPath,
-    Signal,
+    Error, Frame, Kind, OutOfRange, Payload, Place, Quantities, Quantity, ReadNumber, ReadPath, Received, SetNumber,
+    SetPath, Signal,
 };
 
 const TENTHS: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(100, 5000);
@@ -58,11 +59,28 @@ fn what_lies_beyond_a_limit_is_refused_by_its_own_value() {
     assert_eq!([24_000, 24_001].map(|value| set(&HALVES, value).is_ok()), [true, false]);
 }
 
+/// Whether a heater is on.
+const ON: States = States { place: Place::byte(0), inactive: 0, active: 1 };
+
 impl Quantities for Message {
-    const READS: &'static [ReadPath] =
-        &[ReadPath::number(Quantity::OUTPUT_POWER, Some("W"), &[(Kind::Reply, &Heat::SET)], &Heat::POWER)];
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(Quantity::OUTPUT_POWER, Some("W"), &[(Kind::Reply, &Heat::SET)], &Heat::POWER),
+        ReadPath::switch(Quantity::DELIVERING, &[(Kind::Reply, &Heat::ASK)], ON),
+    ];
     const SETS: &'static [SetPath] =
-        &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER).echoed()];
+        &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER).echoed().limiting().kept()];
+}
+
+#[test]
+fn a_path_says_what_a_device_does_with_a_value() {
+    let path = SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER);
+    let conduct = [path, path.refusing(), path.ignoring(), path.limiting()].map(|path| path.out_of_range);
+    assert_eq!(conduct, [None, Some(OutOfRange::Refused), Some(OutOfRange::Ignored), Some(OutOfRange::Limited)]);
+    assert_eq!([path, path.kept(), path.lost()].map(|path| path.is_kept), [None, Some(true), Some(false)]);
+    assert!(!path.is_echoed && path.echoed().is_echoed);
+    // The power lies within 0 to 2000 W.
+    let limited = [2_500_000, -1, 1_234_567, i32::MAX, i32::MIN].map(|value| path.limited(value, 1_000_000));
+    assert_eq!(limited, [2_000_000, 0, 1_234_567, 2_000_000, 0]);
 }
 
 #[test]

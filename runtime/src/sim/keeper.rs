@@ -1,5 +1,8 @@
 //! A device that keeps what it is told.
 
+#[cfg(test)]
+mod tests;
+
 use super::{Answer, Device};
 use crate::{Addressed, OutOfRange, Quantities, Quantity, Received};
 
@@ -10,8 +13,8 @@ pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
 /// function builds its other answers from what it keeps.
 ///
 /// When it starts anew, it forgets all but what the document says it keeps without power. It does with a value out of
-/// range what the document says, and then the function answers. It switches [`DELIVERING`](Quantity::DELIVERING) off when its watchdog runs
-/// out.
+/// range what the document says, and then the function answers. It switches [`DELIVERING`](Quantity::DELIVERING) off
+/// when its watchdog runs out.
 ///
 /// Each quantity takes 24 bytes on a processor of 64 bits, and 12 on one of 32 bits.
 #[derive(Clone, Copy, Debug)]

@@ -10,19 +10,19 @@ use crate::sim::Random;
 use crate::tests::heaters::{COMMAND, Heat, Message, To, frame};
 use crate::{Frame, Request};
 
-type Asking = Client<Message, 6, 1>;
+pub(super) type Asking = Client<Message, 6, 1>;
 
-const REFRESH: u32 = 1000;
+pub(super) const REFRESH: u32 = 1000;
 
-fn set(power_w: f64) -> Request<Message, Heat> {
+pub(super) fn set(power_w: f64) -> Request<Message, Heat> {
     Heat { power_w }.set(To::Heater(3)).expect("a legal request")
 }
 
-fn on(heater: u8) -> Request<Message, Heat> {
+pub(super) fn on(heater: u8) -> Request<Message, Heat> {
     Heat::ask(To::Heater(heater)).expect("a legal request")
 }
 
-fn echo(steps: u8) -> Frame {
+pub(super) fn echo(steps: u8) -> Frame {
     frame(0x0107_F003, [2, 0xF0, 0, steps])
 }
 
@@ -39,7 +39,7 @@ fn held() -> (Asking, [Ticket; 2]) {
 }
 
 /// Polls until a time, and returns when what was sent.
-fn sent(client: &mut Asking, times: core::ops::Range<u32>) -> Vec<(u32, Frame)> {
+pub(super) fn sent(client: &mut Asking, times: core::ops::Range<u32>) -> Vec<(u32, Frame)> {
     let mut sent = Vec::new();
     for now in times {
         loop {
@@ -107,7 +107,10 @@ fn a_second_that_nobody_answers_is_sent_again_after_the_first_is_in_effect_anew(
 fn what_a_module_hears_while_it_starts_is_said_again_from_the_first_on() {
     let (mut client, [first, second]) = held();
     let (set, on) = (frame_sent(*set(1500.0).frame()), frame_sent(*on(3).frame()));
-    let starts = |client: &mut Asking, frame: &Frame, of| matches!(client.handle(frame), Heard::Starting { ticket, .. } if ticket == of);
+    let starts = |client: &mut Asking, frame: &Frame, first| {
+        let heard = client.handle(frame);
+        matches!(heard, Heard::Starting { ticket, .. } if ticket == first)
+    };
     assert_eq!(client.step(0), set);
     assert!(starts(&mut client, &frame(0x1D07_F003, [2, 0xF0, 0, 0]), first));
     assert_eq!([client.step(99), client.step(100)], [Step::Wait(Some(100)), set]);
