@@ -144,7 +144,8 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    /// Says why the identifier shows no direction: the first field whose value no addressing mode has, and what they have.
+    /// Says why the identifier shows no direction. It names the first field whose value no addressing mode has, and the
+    /// values that they have.
     fn undirected(&self) -> String {
         let strange = self.protocol.identifier.fields.ids().find_map(|field| {
             let known = self.documented_values(field)?;

@@ -36,7 +36,7 @@ pub fn part_name(name: &str, index: usize) -> Ident {
     if index == 0 { ident(name) } else { ident(&format!("{name}_{}", index + 1)) }
 }
 
-/// Returns how a part is inlined. The first ones become part of their caller, and another one may, also in another crate.
+/// Returns how a part is inlined. The first ones become part of their caller. Another one may, also in another crate.
 pub fn inlining(index: usize) -> TokenStream {
     if index < INLINED { quote!(#[inline(always)]) } else { quote!(#[inline]) }
 }
