@@ -14,8 +14,8 @@ mod transfer;
 mod value;
 
 pub use assembly::{Assembled, Assembly, Taken};
-pub use decode::decode;
 pub(crate) use decode::failed_tests;
+pub use decode::{Recognised, decode, recognise};
 pub use device::{Sent, module, sent};
 pub use encode::{encode, encode_long};
 pub use request::{Target, Targets, accesses, request, requests, source, targets};

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use super::notes::signal_note;
-use super::{Decoded, Form, Frame, Problem, Reading, Unrecognised, hexadecimal, hexadecimal_ranges};
+use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, hexadecimal, hexadecimal_ranges};
 use crate::model::{
     AddressPattern, AddressType, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id,
     Message, ModelId, Protocol, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Table, Travel, Way, Who,
@@ -19,7 +19,52 @@ use crate::model::{
 /// Says why a frame is not recognised. The tests come in the order of [`Problem`]'s variants, with
 /// one exception. Constants in the data bytes are tested after the length.
 pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Decoded, Unrecognised> {
-    Decoder { protocol, model, frame, data: frame.padded() }.decode()
+    recognise(protocol, model, frame).map(|recognised| recognised.decode(frame))
+}
+
+/// Finds the kind of a frame that goes to or comes from a device model, and its addressing mode.
+///
+/// # Errors
+///
+/// Says why a frame is not recognised, as [`decode`] does.
+pub fn recognise<'a>(
+    protocol: &'a Protocol,
+    model: Option<ModelId>,
+    frame: &Frame,
+) -> Result<Recognised<'a>, Unrecognised> {
+    Decoder { protocol, model, frame, data: frame.padded() }.recognise()
+}
+
+/// What a frame is, before its values are read.
+pub struct Recognised<'a> {
+    protocol: &'a Protocol,
+    model: Option<ModelId>,
+    best: Candidate<'a>,
+    addressing: Addressing<'a>,
+    note: Option<Note>,
+    id: u32,
+    length: usize,
+    /// No data byte counted.
+    is_by_identifier: bool,
+}
+
+impl Recognised<'_> {
+    /// Tests whether another frame is surely recognised as the same: it has the same identifier and length, and
+    /// nothing else decided.
+    pub fn is_known_of(&self, frame: &Frame) -> bool {
+        self.is_by_identifier
+            && (frame.form, frame.id, frame.data.len()) == (Form::Data, self.id, self.length)
+            && frame.extended == self.protocol.identifier.extended
+    }
+
+    /// Reads the values of a frame that is recognised so.
+    pub fn decode(&self, frame: &Frame) -> Decoded {
+        let Self { protocol, model, best, addressing, note, .. } = self;
+        let known = Decoder { protocol, model: *model, frame, data: frame.padded() };
+        let mut decoded = known.decoded(*best, addressing);
+        decoded.notes.extend(note.clone());
+        decoded
+    }
 }
 
 /// Decodes the identifier of a long message that came by a transport. `frame` is what it would be if one frame were
@@ -27,7 +72,7 @@ pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Res
 pub fn transported(protocol: &Protocol, model: Option<ModelId>, layout: &FrameLayout, frame: &Frame) -> Decoded {
     let decoder = Decoder { protocol, model, frame, data: frame.padded() };
     let bare = FrameLayout { signals: Vec::new(), covered: u64::MAX, reserved: Reserved::default(), ..layout.clone() };
-    decoder.decoded((FrameId::new(0), &bare))
+    decoder.decoded((FrameId::new(0), &bare), &decoder.addressing(&bare))
 }
 
 /// Returns tests of one field that keep a frame from showing a direction. They are those
@@ -54,10 +99,10 @@ pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, is_to_module: boo
 /// A kind of frame that a frame may be.
 pub type Candidate<'a> = (FrameId, &'a FrameLayout);
 
-pub struct Decoder<'a> {
+pub struct Decoder<'a, 'f> {
     pub protocol: &'a Protocol,
     pub model: Option<ModelId>,
-    pub frame: &'a Frame,
+    pub frame: &'f Frame,
     data: [u8; 8],
 }
 
@@ -78,8 +123,8 @@ pub struct Addressing<'a> {
     pub travel: Option<(Travel, &'a AddressPattern)>,
 }
 
-impl<'a> Decoder<'a> {
-    fn decode(&self) -> Result<Decoded, Unrecognised> {
+impl<'a> Decoder<'a, '_> {
+    fn recognise(&self) -> Result<Recognised<'a>, Unrecognised> {
         if let Some(text) = self.form() {
             return Err(self.unrecognised(Problem::Frame, text.to_owned(), false, None));
         }
@@ -89,9 +134,16 @@ impl<'a> Decoder<'a> {
         let group = self.by_identifier(self.course()?)?;
         let of_length = self.by_length(group)?;
         let (best, frames) = self.by_payload(group, of_length)?;
-        let mut decoded = self.decoded(best);
-        decoded.notes.extend(self.model_note(best, frames));
-        Ok(decoded)
+        Ok(Recognised {
+            protocol: self.protocol,
+            model: self.model,
+            best,
+            addressing: self.addressing(best.1),
+            note: self.model_note(best, frames),
+            id: self.frame.id,
+            length: self.frame.data.len(),
+            is_by_identifier: matches!(group.choice, Some(Choice::End(_))),
+        })
     }
 
     fn form(&self) -> Option<&'static str> {
@@ -373,9 +425,8 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    fn decoded(&self, (id, frame): Candidate) -> Decoded {
+    fn decoded(&self, (id, frame): Candidate, addressing: &Addressing) -> Decoded {
         let message = self.message((id, frame));
-        let addressing = self.addressing(frame);
         let mut signals = Vec::with_capacity(frame.signals.len());
         for (id, signal) in self.protocol.signals_of(frame) {
             if usize::from(signal.end()) <= self.frame.data.len() {
@@ -387,7 +438,7 @@ impl<'a> Decoder<'a> {
         let reserved = self.reserved(frame);
         let mut notes = Vec::new();
         self.error_notes(&mut notes, frame, &selectors);
-        self.address_notes(&mut notes, message, frame, &addressing);
+        self.address_notes(&mut notes, message, frame, addressing);
         let note = |reading: &Reading| signal_note(self.protocol, message, self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));

@@ -10,7 +10,7 @@ use crate::model::{
     FrameId, FrameLayout, Message, ModelId, NoteRule, Protocol, Range, SelectorId, Signal, first_bytes,
 };
 
-impl<'a> Decoder<'a> {
+impl<'a> Decoder<'a, '_> {
     /// Says that the number of a part means nothing without the device model.
     pub fn part_note(&self, message: &Message) -> Option<Note> {
         let (_, long) = self.protocol.long_message(message)?;
