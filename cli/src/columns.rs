@@ -44,18 +44,36 @@ impl Columns {
     /// column.
     pub fn row<'a>(&mut self, text: &'a mut Vec<u8>, cells: &[&str]) -> Lines<'a> {
         let line = text.len();
+        self.fill(text, 0, cells);
+        self.lines(text, line)
+    }
+
+    /// Adds cells from a column on, and makes room for them.
+    pub fn fill(&mut self, text: &mut Vec<u8>, first: usize, cells: &[impl AsRef<str>]) {
+        let mut place = text.len();
+        let columns = &mut self.widths[first..];
         // To write into blanks costs less than to add cells and blanks by turns.
-        text.resize(line + self.left() + cells.iter().map(|cell| cell.len()).sum::<usize>(), b' ');
-        let mut first = line;
-        for (column, cell) in self.widths.iter_mut().zip(cells) {
+        let cells = || cells.iter().map(AsRef::as_ref);
+        let room = |(column, cell): (&usize, &str)| column + cell.len() + GAP.len();
+        text.resize(place + columns.iter().zip(cells()).map(room).sum::<usize>(), b' ');
+        for (column, cell) in columns.iter_mut().zip(cells()) {
             let width = width(cell.as_bytes());
             *column = (*column).max(width.min(WIDEST));
-            text[first..first + cell.len()].copy_from_slice(cell.as_bytes());
-            first += cell.len() + column.saturating_sub(width) + GAP.len();
+            text[place..place + cell.len()].copy_from_slice(cell.as_bytes());
+            place += cell.len() + column.saturating_sub(width) + GAP.len();
         }
-        text.truncate(first);
+        text.truncate(place);
+    }
+
+    /// Begins the last column of a row whose cells are filled. `line` is where it begins in the text.
+    pub fn lines<'a>(&self, text: &'a mut Vec<u8>, line: usize) -> Lines<'a> {
         let left = self.left();
-        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first, width: None, text }
+        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first: text.len(), width: None, text }
+    }
+
+    /// Returns the widths of all columns but the last.
+    pub fn widths(&self) -> &[usize] {
+        &self.widths
     }
 
     /// Returns the width of the columns before the last one.

@@ -9,7 +9,7 @@ mod summary;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use canspec_codegen::interpret::{self, Assembled, Decoded, Frame, Taken, Unrecognised};
+use canspec_codegen::interpret::{Assembled, Decoded, Frame, Taken, Unrecognised};
 use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
@@ -17,6 +17,7 @@ use crate::capture::{self, Capture};
 use crate::channels::{Channels, Others};
 use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
+use crate::kept::Kept;
 use crate::line::{self, Outcome, Whole};
 use crate::log::{Entry, Reader};
 use crate::model::{Device, Model};
@@ -102,6 +103,20 @@ impl State {
     }
 }
 
+/// What a worker has of the lines so far.
+struct Work<'a> {
+    state: State,
+    counts: Counts,
+    kept: Kept<'a>,
+}
+
+impl<'a> Work<'a> {
+    /// Begins a part of the log behind the lines so far. `kept` is what was kept of other parts.
+    fn after(&self, kept: Kept<'a>) -> Self {
+        Self { state: self.state.clone(), counts: Counts::default(), kept }
+    }
+}
+
 /// What is counted of a log.
 #[derive(Default)]
 struct Counts {
@@ -172,25 +187,25 @@ impl Decode {
         let devices: Vec<_> = protocols.iter().zip(models).collect();
         let is_table = matches!(self.format, Format::Text) && !self.summary;
         let assemblies = (self.assemble || is_table).then(Assemblies::default);
-        let mut state = State { reader: Reader::default(), assemblies, printer: self.printer(&protocols)? };
+        let state = State { reader: Reader::default(), assemblies, printer: self.printer(&protocols)? };
+        let mut work = Work { state, counts: Counts::default(), kept: Kept::default() };
         let mut out = BufWriter::with_capacity(BUFFER, output()?);
         let open = if self.summary { Input::open_whole } else { Input::open };
         let input = open(self.file.as_deref())?;
-        let mut counts = Counts::default();
         let finish = if input.has_parts() && !self.summary {
-            ahead::decode(input, &mut out, &mut state, &mut counts, |state, counts, out, line| {
-                self.line(&devices, state, counts, out, line)
-            })?
+            ahead::decode(input, &mut out, &mut work, |work, out, line| self.line(&devices, work, out, line))?
         } else {
             let mut text = Vec::new();
             input.each(&mut out, |out, line| {
                 text.clear();
-                self.line(&devices, &mut state, &mut counts, &mut text, line).map(|()| out.write_all(&text))
+                self.line(&devices, &mut work, &mut text, line).map(|()| out.write_all(&text))
             })?
         };
+        let Work { mut state, counts, mut kept } = work;
         for (protocol, channel, whole) in state.assemblies.iter_mut().flat_map(|known| known.finish(&devices)) {
             let mut text = Vec::new();
-            self.show_whole(&mut state.printer, &mut text, protocol, channel.as_deref(), whole);
+            let printer = (&mut state.printer, &mut kept);
+            self.show_whole(printer, &mut text, protocol, channel.as_deref(), whole);
             out.write_all(&text)?;
         }
         state.printer.end(&mut out)?;
@@ -203,11 +218,10 @@ impl Decode {
     }
 
     /// Writes what the protocols say of a line.
-    fn line(
+    fn line<'a>(
         &self,
-        devices: &[Device<'_>],
-        state: &mut State,
-        counts: &mut Counts,
+        devices: &[Device<'a>],
+        Work { state, counts, kept }: &mut Work<'a>,
         out: &mut Vec<u8>,
         line: Line<'_>,
     ) -> Result<(), String> {
@@ -215,7 +229,7 @@ impl Decode {
         if !self.channels.keep(entry.channel, &mut counts.others) {
             return Ok(());
         }
-        let decoded = decode(devices, &entry.frame);
+        let decoded = decode(kept, devices, &entry.frame);
         counts.frames += 1;
         counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
         let Some((device, mut decoded)) = decoded else { return Ok(()) };
@@ -225,10 +239,11 @@ impl Decode {
         };
         let is_hidden = taken.is_part && matches!(self.format, Format::Text) && !self.frames;
         if !is_hidden {
-            self.show(&mut state.printer, out, line.number, &entry, (device.0, &mut decoded));
+            let printer = (&mut state.printer, &mut *kept);
+            self.show(printer, out, line.number, &entry, (device.0, &mut decoded));
         }
         for whole in taken.ended {
-            self.show_whole(&mut state.printer, out, device.0, entry.channel, whole);
+            self.show_whole((&mut state.printer, &mut *kept), out, device.0, entry.channel, whole);
         }
         Ok(())
     }
@@ -265,7 +280,7 @@ impl Decode {
 
     fn show(
         &self,
-        printer: &mut Printer,
+        (printer, kept): (&mut Printer, &mut Kept),
         out: &mut Vec<u8>,
         line: usize,
         entry: &Entry<'_>,
@@ -280,12 +295,12 @@ impl Decode {
         }
         let Entry { time, channel, frame, .. } = entry;
         let (time, channel) = (time.as_deref(), *channel);
-        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: None });
+        printer.frame(out, kept, &Outcome { line, time, channel, frame, protocol, decoded, whole: None });
     }
 
     fn show_whole(
         &self,
-        printer: &mut Printer,
+        (printer, kept): (&mut Printer, &mut Kept),
         out: &mut Vec<u8>,
         protocol: &Protocol,
         channel: Option<&str>,
@@ -306,7 +321,7 @@ impl Decode {
         };
         let (line, time) = (last.map_or(0, |mark| mark.line), last.and_then(|mark| mark.time.as_deref()));
         let (frame, decoded) = (&frame, &Ok(decoded));
-        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) });
+        printer.frame(out, kept, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) });
     }
 }
 
@@ -321,10 +336,10 @@ impl Printer {
         }
     }
 
-    fn frame(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+    fn frame(&mut self, out: &mut Vec<u8>, kept: &mut Kept, outcome: &Outcome<'_>) {
         match self {
-            Self::Text(table) => table.write(out, outcome),
-            Self::Jsonl => line::write(out, outcome),
+            Self::Text(table) => table.write(out, kept, outcome),
+            Self::Jsonl => line::write(out, kept, outcome),
             Self::Csv(rows) => rows.write(out, outcome),
             Self::Summary { counts, .. } => counts.count(outcome),
         }
@@ -346,10 +361,10 @@ type Answer<'a> = (Device<'a>, Result<Decoded, Unrecognised>);
 
 /// Decodes by the first protocol that recognises the frame. If none does, it is the one whose tests the frame passes
 /// furthest.
-fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
+fn decode<'a>(kept: &mut Kept<'a>, devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
     let mut nearest: Option<(Device<'a>, Unrecognised)> = None;
     for &device in devices {
-        match interpret::decode(device.0, device.1, frame) {
+        match kept.decode(device, frame) {
             Ok(decoded) => return Some((device, Ok(decoded))),
             Err(other) => {
                 // The tests are counted in their order.

@@ -6,6 +6,7 @@ use canspec_codegen::model::Protocol;
 use crate::capture::Capture;
 use crate::encode;
 use crate::import;
+use crate::kept::Kept;
 use crate::line::{self, Outcome};
 use crate::log::Reader;
 use crate::table::Table;
@@ -37,8 +38,8 @@ impl Log {
         let outcome = Outcome { line: 1, time, channel, frame, protocol, decoded, whole: None };
         let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
         let unwritten = |error: std::io::Error| error.to_string();
-        line::write(&mut json, &outcome);
-        Table::new(std::slice::from_ref(protocol)).write(&mut table, &outcome);
+        line::write(&mut json, &mut Kept::default(), &outcome);
+        Table::new(std::slice::from_ref(protocol)).write(&mut table, &mut Kept::default(), &outcome);
         let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
         Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))

@@ -22,6 +22,7 @@ mod identify;
 mod import;
 mod input;
 mod interrupt;
+mod kept;
 mod line;
 mod list;
 mod log;

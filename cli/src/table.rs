@@ -5,9 +5,13 @@ use canspec_codegen::model::{Kind, Mode, Protocol, SelectorId, Side};
 
 use crate::columns::{Columns, Lines};
 use crate::fields::{Field, Read, elements, fields};
+use crate::kept::Kept;
 use crate::line::{Outcome, addresses};
 use crate::log;
 use crate::value;
+
+/// The columns that stand before that of the identifier: stamp and channel.
+const OF_STAMP: usize = 2;
 
 const HEADINGS: [&str; 6] = ["TIME", "CHANNEL", "IDENTIFIER", "ADDRESS", "ACCESS", "MESSAGE"];
 
@@ -24,16 +28,7 @@ pub struct Table {
     /// Every row says by which protocol it was read.
     several: bool,
     started: bool,
-    row: Row,
-}
-
-/// The texts of a row that are made for it.
-#[derive(Clone, Default)]
-struct Row {
-    identifier: Vec<u8>,
-    address: String,
-    message: String,
-    /// What may be parted before it is added.
+    /// Room for what may be parted before it is added.
     item: Vec<u8>,
 }
 
@@ -41,7 +36,7 @@ impl Table {
     /// Makes columns that the names of these protocols fit.
     pub fn new(protocols: &[Protocol]) -> Self {
         let (columns, several) = (Columns::new(&HEADINGS), protocols.len() > 1);
-        let mut table = Self { columns, several, started: false, row: Row::default() };
+        let mut table = Self { columns, several, started: false, item: Vec::new() };
         for protocol in protocols {
             table.make_room(protocol);
         }
@@ -72,44 +67,53 @@ impl Table {
     }
 
     /// Writes a frame as a row, with its notes below.
-    pub fn write(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
-        let Self { columns, several, started, row } = self;
-        row.identifier.clear();
-        log::write_identifier(&mut row.identifier, outcome.frame);
-        let access = row.name(outcome, several.then_some(outcome.protocol));
-        let identifier = str::from_utf8(&row.identifier).unwrap_or_default();
-        let time = outcome.time.unwrap_or_default();
-        let cells = [time, outcome.channel.unwrap_or(""), identifier, &row.address, access, &row.message];
-        if !*started {
-            columns.widen(&cells);
-            columns.widen(&[&grown(time)]);
-            let mut lines = columns.row(out, &HEADINGS);
-            lines.add("SIGNALS", "");
-            lines.end();
-            *started = true;
+    pub fn write(&mut self, out: &mut Vec<u8>, kept: &mut Kept, outcome: &Outcome<'_>) {
+        if !self.started {
+            self.begin(out, outcome);
         }
-        let mut lines = columns.row(out, &cells);
-        signals(&mut lines, &mut row.item, outcome);
+        let Self { columns, several, item, .. } = self;
+        let named = several.then_some(outcome.protocol);
+        let line = out.len();
+        columns.fill(out, 0, &[outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default()]);
+        kept.fit(columns.widths());
+        let mut fill = |out: &mut Vec<u8>| columns.fill(out, OF_STAMP, &cells(outcome, named));
+        match outcome.decoded {
+            Ok(decoded) => kept.add(out, outcome, decoded, fill),
+            Err(_) => fill(out),
+        }
+        let mut lines = columns.lines(out, line);
+        signals(&mut lines, item, outcome);
         lines.end();
+    }
+
+    /// Writes the headings above the first frame, whose cells make room for those of later ones.
+    fn begin(&mut self, out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+        let Self { columns, several, .. } = self;
+        let (time, channel) = (outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default());
+        let [identifier, address, access, message] = &cells(outcome, several.then_some(outcome.protocol));
+        columns.widen(&[time, channel, identifier, address, access, message]);
+        columns.widen(&[&grown(time)]);
+        let mut lines = columns.row(out, &HEADINGS);
+        lines.add("SIGNALS", "");
+        lines.end();
+        self.started = true;
     }
 }
 
-impl Row {
-    /// Sets address and message, and returns the access.
-    fn name<'a>(&mut self, outcome: &Outcome<'a>, named: Option<&Protocol>) -> &'a str {
-        let protocol = outcome.protocol;
-        self.address.clear();
-        self.message.clear();
-        if let Ok(decoded) = outcome.decoded {
-            address(&mut self.address, outcome, decoded);
-            message(&mut self.message, named, &protocol.messages[decoded.message].name);
-            &protocol.accesses[decoded.access].name
-        } else {
-            self.address.push('?');
-            message(&mut self.message, named, "?");
-            ""
-        }
-    }
+/// Returns identifier, address, access and message. The name of a protocol that is given stands before the message.
+fn cells(outcome: &Outcome<'_>, named: Option<&Protocol>) -> [String; 4] {
+    let protocol = outcome.protocol;
+    let (mut address_cell, mut message_cell) = (String::new(), String::new());
+    let access = if let Ok(decoded) = outcome.decoded {
+        address(&mut address_cell, outcome, decoded);
+        message(&mut message_cell, named, &protocol.messages[decoded.message].name);
+        protocol.accesses[decoded.access].name.clone()
+    } else {
+        address_cell.push('?');
+        message(&mut message_cell, named, "?");
+        String::new()
+    };
+    [log::identifier_text(outcome.frame), address_cell, access, message_cell]
 }
 
 /// Adds the name of a message, behind that of its protocol if one is given.

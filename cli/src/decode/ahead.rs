@@ -4,18 +4,18 @@ use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::{panic, thread};
 
-use super::{Counts, State};
+use super::Work;
 use crate::failure::{Failure, Finish};
 use crate::input::{Input, Line, Part, Written};
+use crate::kept::Kept;
 
 /// What was made of a part.
-struct Done {
+struct Done<'a> {
     written: Written,
-    state: State,
-    counts: Counts,
+    work: Work<'a>,
 }
 
-/// Does `work` on each line of a file.
+/// Calls `decode` with each line of a file.
 ///
 /// A part begins with the state that is known when its turn to be read comes. If the parts before it end with another
 /// state, it is decoded again in its turn. Nobody sees the difference. While there is a format that keeps something of
@@ -24,20 +24,18 @@ struct Done {
 /// # Errors
 ///
 /// Where the input cannot be read, or the output cannot be written.
-pub fn decode(
+pub fn decode<'a>(
     input: Input,
     out: &mut impl Write,
-    state: &mut State,
-    counts: &mut Counts,
-    work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<(), String> + Sync,
+    work: &mut Work<'a>,
+    decode: impl Fn(&mut Work<'a>, &mut Vec<u8>, Line<'_>) -> Result<(), String> + Sync,
 ) -> Result<Finish, Failure> {
     let mut input = input.watched();
     // One part more than cores: none is idle while a part is written.
     let parts = thread::available_parallelism().map_or(1, usize::from) + 1;
-    let run = |part: Part, mut state: State, text: Vec<u8>| {
-        let mut counts = Counts::default();
-        let written = part.work(text, |out, line| work(&mut state, &mut counts, out, line));
-        Done { written, state, counts }
+    let run = |part: Part, mut work: Work<'a>, text: Vec<u8>| {
+        let written = part.work(text, |out, line| decode(&mut work, out, line));
+        Done { written, work }
     };
     let run = &run;
     thread::scope(|scope| {
@@ -46,14 +44,14 @@ pub fn decode(
         let mut version = 0;
         let mut ahead = VecDeque::new();
         // A buffer that was written to before costs no page faults.
-        let mut buffers = Vec::new();
+        let mut rooms: Vec<(Vec<u8>, Kept<'_>)> = Vec::new();
         loop {
-            let most = if state.is_like(state) { parts } else { 1 };
+            let most = if work.state.is_like(&work.state) { parts } else { 1 };
             while !is_read && ahead.len() < most {
                 match input.next_part() {
                     Ok(Some(part)) => {
-                        let (again, start) = (part.clone(), state.clone());
-                        let text = buffers.pop().unwrap_or_default();
+                        let (text, kept) = rooms.pop().unwrap_or_default();
+                        let (again, start) = (part.clone(), work.after(kept));
                         ahead.push_back((again, version, scope.spawn(move || run(part, start, text))));
                     }
                     Ok(None) => is_read = true,
@@ -65,17 +63,17 @@ pub fn decode(
             let length = part.length();
             if begun != version {
                 done.written.text.clear();
-                done = run(part, state.clone(), done.written.text);
+                done = run(part, work.after(done.work.kept), done.written.text);
             }
             if deliver(&mut input, out, &done.written)? == Finish::Errors {
                 finish = Finish::Errors;
             }
             input.advance(length);
-            version += u64::from(!state.is_like(&done.state));
-            *state = done.state;
-            counts.join(done.counts);
+            version += u64::from(!work.state.is_like(&done.work.state));
+            work.state = done.work.state;
+            work.counts.join(done.work.counts);
             done.written.text.clear();
-            buffers.push(done.written.text);
+            rooms.push((done.written.text, done.work.kept));
         }
         failure.map_or(Ok(finish), Err)
     })

@@ -4,6 +4,7 @@ use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressType, IdentifierField, Protocol, SelectorId, Signal, StatusBit};
 
 use crate::fields::{Field, Read, elements, fields};
+use crate::kept::Kept;
 use crate::line::json::{integer, list, members, name, natural, number, object, optional, text};
 use crate::line::transport;
 use crate::log;
@@ -37,10 +38,13 @@ pub struct Whole<'a> {
 }
 
 /// Writes a frame as one line.
-pub fn write(out: &mut Vec<u8>, outcome: &Outcome<'_>) {
+pub fn write(out: &mut Vec<u8>, kept: &mut Kept, outcome: &Outcome<'_>) {
     head(out, outcome);
     match outcome.decoded {
-        Ok(decoded) => recognised(out, outcome, decoded),
+        Ok(decoded) => {
+            kept.add(out, outcome, decoded, |out| shown_by_identifier(out, outcome, decoded));
+            recognised(out, outcome, decoded);
+        }
         Err(unrecognised) => unknown(out, outcome.protocol, unrecognised),
     }
     out.extend_from_slice(b"}\n");
@@ -74,14 +78,19 @@ fn head(out: &mut Vec<u8>, outcome: &Outcome<'_>) {
             optional(out, whole.data.map(log::hexadecimal).as_deref(), name);
         }
     }
-    out.extend_from_slice(b",\"protocol\":\"");
-    out.extend_from_slice(outcome.protocol.name.as_bytes());
 }
 
-fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
+fn of_protocol(out: &mut Vec<u8>, protocol: &Protocol) {
+    out.extend_from_slice(b",\"protocol\":");
+    name(out, &protocol.name);
+}
+
+/// Writes what identifier and kind of the frame alone decide.
+fn shown_by_identifier(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
     let protocol = outcome.protocol;
     let message = &protocol.messages[decoded.message];
-    out.extend_from_slice(b"\",\"message\":\"");
+    of_protocol(out, protocol);
+    out.extend_from_slice(b",\"message\":\"");
     let transport = transport::name(protocol, decoded);
     out.extend_from_slice(transport.as_ref().unwrap_or(&message.name).as_bytes());
     out.extend_from_slice(b"\",\"access\":\"");
@@ -93,9 +102,15 @@ fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
     out.extend_from_slice(b",\"addresses\":");
     let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
     object(out, &addresses, integer);
+    identifier(out, decoded.identifier(protocol));
+}
+
+fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
+    let protocol = outcome.protocol;
     let content = decoded.content(protocol);
-    let is_number = |signal: &Signal| transport.is_some() && transport::is_number(signal);
-    selectors(out, decoded.identifier(protocol), &all_selectors(outcome, decoded));
+    let is_of_transport = transport::carries(protocol, decoded);
+    let is_number = |signal: &Signal| is_of_transport && transport::is_number(signal);
+    selectors(out, &all_selectors(outcome, decoded));
     out.extend_from_slice(b",\"signals\":");
     let shown = fields(content, decoded).filter(|(_, field)| match field {
         Field::Signal((signal, _)) => !is_number(signal),
@@ -127,13 +142,14 @@ fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
 }
 
 fn unknown(out: &mut Vec<u8>, protocol: &Protocol, unrecognised: &Unrecognised) {
-    out.extend_from_slice(b"\",\"message\":null,\"problem\":{\"kind\":");
+    of_protocol(out, protocol);
+    out.extend_from_slice(b",\"message\":null,\"problem\":{\"kind\":");
     name(out, unrecognised.problem.name());
     out.extend_from_slice(b",\"text\":");
     text(out, &unrecognised.text);
     out.extend_from_slice(b"}");
-    let identifier = protocol.identifier.fields.iter().zip(unrecognised.identifier.iter().copied());
-    selectors(out, identifier, &selected(protocol, &unrecognised.selectors));
+    identifier(out, protocol.identifier.fields.iter().zip(unrecognised.identifier.iter().copied()));
+    selectors(out, &selected(protocol, &unrecognised.selectors));
 }
 
 /// Names the selectors of a frame, and what numbers a frame of a transport or a message in parts.
@@ -142,7 +158,7 @@ pub fn all_selectors<'a>(
     decoded: &'a Decoded,
 ) -> impl Iterator<Item = (&'a str, u64)> + Clone {
     let content = decoded.content(outcome.protocol);
-    let is_of_transport = !decoded.signals.is_empty() && transport::name(outcome.protocol, decoded).is_some();
+    let is_of_transport = !decoded.signals.is_empty() && transport::carries(outcome.protocol, decoded);
     let signals = if is_of_transport { &decoded.signals[..] } else { &[] };
     let numbers = signals.iter().map(|reading| (&content[reading.signal], reading.bits));
     let numbers = numbers.filter(|(signal, _)| transport::is_number(signal));
@@ -159,14 +175,14 @@ pub fn selected<'a>(
     selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value))
 }
 
-/// Writes the fields of the identifier, and the selectors of the data bytes.
-fn selectors<'a>(
-    out: &mut Vec<u8>,
-    identifier: impl Iterator<Item = (&'a IdentifierField, u32)>,
-    selectors: &(impl Iterator<Item = (&'a str, u64)> + Clone),
-) {
+/// Writes the fields of the identifier.
+fn identifier<'a>(out: &mut Vec<u8>, fields: impl Iterator<Item = (&'a IdentifierField, u32)>) {
     out.extend_from_slice(b",\"identifier\":");
-    members(out, identifier.map(|(field, value)| (field.name.as_str(), value)), natural);
+    members(out, fields.map(|(field, value)| (field.name.as_str(), value)), natural);
+}
+
+/// Writes the selectors of the data bytes.
+fn selectors<'a>(out: &mut Vec<u8>, selectors: &(impl Iterator<Item = (&'a str, u64)> + Clone)) {
     out.extend_from_slice(b",\"selectors\":");
     object(out, selectors, natural);
 }
@@ -362,7 +378,7 @@ messages:
         let decoded = &decode(&protocol, None, frame);
         let outcome = Outcome { line: 7, time, channel, frame, protocol: &protocol, decoded, whole: None };
         let mut out = Vec::new();
-        write(&mut out, &outcome);
+        write(&mut out, &mut Kept::default(), &outcome);
         String::from_utf8(out).expect("JSON is text")
     }
 

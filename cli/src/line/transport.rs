@@ -4,9 +4,14 @@
 use canspec_codegen::interpret::{Content, Decoded, Input};
 use canspec_codegen::model::{Constant, Message, Protocol, Signal, Transport};
 
+/// Tests whether a transport has a frame.
+pub fn carries(protocol: &Protocol, decoded: &Decoded) -> bool {
+    decoded.long.is_none() && protocol.transport_frame(decoded.message).is_some()
+}
+
 /// Returns the name of a frame, if a transport has it.
 pub fn name(protocol: &Protocol, decoded: &Decoded) -> Option<String> {
-    let (_, transport, frame) = protocol.transport_frame(decoded.message).filter(|_| decoded.long.is_none())?;
+    let (_, transport, frame) = protocol.transport_frame(decoded.message).filter(|_| carries(protocol, decoded))?;
     let part = if frame.has_data() { DATA } else { CONTROL };
     Some(format!("{}.{part}", transport.name))
 }
