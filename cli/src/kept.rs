@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use crate::line::Outcome;
 use crate::model::Device;
 
-/// Frames of which something is kept at the same time. A bus has far fewer identifiers.
+/// As many frames are kept at the same time. A bus has far fewer identifiers.
 const MOST: usize = 1 << 13;
 
 /// What identifier and kind of a frame alone decide: which message it is, its addresses and its names. Most frames of
