@@ -125,10 +125,11 @@ pub(crate) fn bits(number: u64) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use std::string::ToString;
+    use std::vec;
 
     use super::*;
     use crate::plumbing::{Legend, Piece, Word};
-    use crate::{Error, Payload, Place, Signal, WriteSignal};
+    use crate::{AnySignal, Error, Payload, Place, Signal, WriteSignal};
 
     #[test]
     fn every_number_of_four_digits_comes_back_and_no_other_bits_are_one() {
@@ -156,6 +157,29 @@ mod tests {
             let refused = day.put(odd, &mut Payload::within_limits("date", [0; 8]));
             assert!(matches!(refused, Err(Error::NotFinite { .. })));
         }
+    }
+
+    #[test]
+    fn a_scale_applies_to_the_number_that_the_digits_write() {
+        const LEVEL: Signal<Bcd<u16>> = Signal::new("level", Place::bytes(0, 1))
+            .scale(1, 10)
+            .offset(-40, 1)
+            .limits(Bcd::from_raw(0x0000), Bcd::from_raw(0x1250));
+        let shown = |data| {
+            let mut shown = None;
+            LEVEL.read(&data, &mut |reading| shown = Some(reading.meaning.to_string()));
+            shown.expect("it is read once")
+        };
+        assert_eq!(shown([0x06, 0x50, 0, 0, 0, 0, 0, 0]), "25");
+        assert_eq!(shown([0x06, 0x5A, 0, 0, 0, 0, 0, 0]), "?");
+        let sent = |level| {
+            let mut payload = Payload::within_limits("meter", [0; 8]);
+            LEVEL.write(Meaning::Number(Number::Float(level)), &mut payload).map(|()| payload.data()[..2].to_vec())
+        };
+        assert_eq!(sent(-39.0), Ok(vec![0x00, 0x10]));
+        assert_eq!(sent(84.96), Ok(vec![0x12, 0x50]));
+        let error = sent(85.1).expect_err("the limit is 85");
+        assert!(error.to_string().ends_with("is 85.1, but its limits are -40 and 85"), "{error}");
     }
 
     #[test]

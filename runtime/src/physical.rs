@@ -43,9 +43,10 @@ impl<R: Raw + 'static> Physical<R> for R {
 
     #[inline]
     fn number(self, scale: Option<Scale>) -> Number {
-        match scale {
-            Some(scale) => scale.fraction(self.to_bits() as i64),
-            None => Raw::number(self),
+        match (scale, Raw::number(self)) {
+            (Some(scale), Number::Signed(integer)) => scale.fraction(integer),
+            (Some(scale), Number::Unsigned(integer)) => scale.fraction(integer as i64),
+            (_, number) => number,
         }
     }
 

@@ -53,6 +53,9 @@ pub fn fits(protocol: &Protocol, scaled: Scaled, diagnostics: &mut Diagnostics) 
 }
 
 fn missed_by_single(signal: &Signal, linear: Linear) -> Option<String> {
+    if Scaled::F32.of(signal) != Scaled::F32 {
+        return None;
+    }
     let (width, scale) = (signal.place.width(), linear.scale);
     let Some(denominator) = scale.common_denominator(linear.offset).filter(|common| is_below(Some(*common), EXACT))
     else {

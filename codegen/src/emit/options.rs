@@ -1,5 +1,7 @@
 //! The options of generated code.
 
+use crate::model::{Numeral, Signal};
+
 /// Options of generated code.
 ///
 /// Generated code depends only on the runtime, which re-exports the crates of the optional traits.
@@ -46,6 +48,15 @@ pub enum Scaled {
     /// it is no decimal prefix of the unit. Its comment names the step. Readings and errors still
     /// have physical values.
     Steps,
+}
+
+impl Scaled {
+    /// Returns what the values of a signal are. Decimal digits with a scale always count whole steps, since their bits
+    /// may be no number.
+    pub(crate) fn of(self, signal: &Signal) -> Self {
+        let is_decimal = signal.encoding.linear().is_some_and(|linear| linear.numeral == Numeral::Bcd);
+        if is_decimal && !signal.encoding.is_unscaled() { Self::Steps } else { self }
+    }
 }
 
 /// Whether generated code implements an optional trait.

@@ -110,7 +110,7 @@ impl Role {
                     || among(&[Self::Text, Self::Bytes, Self::PackedDecimal, Self::PackedText])
             }
             Key::Fill => among(&[Self::Text, Self::LongText]),
-            Key::Scale | Key::Offset => among(&[Self::Number, Self::Address, Self::OfModel]),
+            Key::Scale | Key::Offset => among(&[Self::Number, Self::Decimal, Self::Address, Self::OfModel]),
             Key::Unit => among(QUANTITIES) || self == Self::OfModel,
             Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
             Key::Values => {

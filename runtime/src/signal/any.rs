@@ -81,7 +81,9 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
         let meaning = match (named(self.specials, bits), self.scale) {
             (Some(name), _) => Meaning::Name(name),
             (None, _) if self.is_by_model => Meaning::None,
-            (None, Some(_)) if R::IS_NUMBER => Meaning::Number(self.physical(value).number(self.scale)),
+            (None, Some(_)) if R::IS_NUMBER && value.is_finite() => {
+                Meaning::Number(self.physical(value).number(self.scale))
+            }
             (None, _) => value.meaning(),
         };
         let raw = if R::SIGNED { Number::Signed(bits as i64) } else { Number::Unsigned(bits) };

@@ -212,7 +212,7 @@ impl Delay {
     pub const VALUE: Signal<Bcd<u16>, f64> =
         Signal::new("value", Place::bytes(1, 0)).unit("min").limits(1.0, 500.0).specials(&[(65_535, "none")]);
     /// The value of `value` that stands for `none`.
-    pub const VALUE_NONE: Bcd<u16> = Bcd::from_raw(65_535);
+    pub const VALUE_NONE: Bcd<u16> = Bcd::from_raw(0xFFFF);
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
@@ -235,6 +235,74 @@ impl Layout for Delay {
     #[inline(always)]
     fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
         Self::VALUE.put(self.value_min, payload)
+    }
+}
+
+/// Wanted output: `command` 0x03. Section 2.
+/// - [`set`](SET_ACCESS): the module answers (`single`).
+/// - Request `033#2305505201065000`: `voltage` 230.5 V, `current` 15.25 A, `temperature` 25 °C.
+/// - Reply `433#FFFF000500FFFF00`: `voltage` none, `current` 0.5 A, `temperature` `not_available`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Output {
+    /// Voltage in steps of 0.1 V: bytes 0..1, decimal digits, `0..=7500`, raw 65535 is `none`.
+    pub voltage_raw: Bcd<u16>,
+    /// Current in mA: bytes 4..2, decimal digits, `500..=20250`.
+    pub current_ma: Bcd<u32>,
+    /// Temperature in steps of 0.1 °C: bytes 5..6, decimal digits, raw 0 is -40 °C, `0..=1250`, raw 65535
+    /// is `not_available`.
+    pub temperature_raw: Option<Bcd<u16>>,
+}
+
+impl Output {
+    /// The signal `voltage`, to read or write it alone, or to ask for its limits.
+    pub const VOLTAGE: Signal<Bcd<u16>> = Signal::new("voltage", Place::bytes(0, 1))
+        .unit("V")
+        .scale(1, 10)
+        .limits(Bcd::from_raw(0x0000), Bcd::from_raw(0x7500))
+        .specials(&[(65_535, "none")]);
+    /// The value of `voltage` that stands for `none`.
+    pub const VOLTAGE_NONE: Bcd<u16> = Bcd::from_raw(0xFFFF);
+    /// The signal `current`, to read or write it alone, or to ask for its limits.
+    pub const CURRENT: Signal<Bcd<u32>> = Signal::new("current", Place::bytes(4, 2))
+        .unit("A")
+        .scale(1, 1000)
+        .limits(Bcd::from_raw(0x00_0500), Bcd::from_raw(0x02_0250));
+    /// The signal `temperature`, to read or write it alone, or to ask for its limits.
+    pub const TEMPERATURE: Signal<Bcd<u16>> = Signal::new("temperature", Place::bytes(5, 6))
+        .unit("°C")
+        .scale(1, 10)
+        .offset(-40, 1)
+        .limits(Bcd::from_raw(0x0000), Bcd::from_raw(0x1250))
+        .specials(&[(65_535, "not_available")])
+        .absent();
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
+    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
+    /// The access `set`, for filters and blank frames of it.
+    pub const SET: Exchange = SET_ACCESS.of("output", FRAME.id(Identifier::COMMAND, 0x03));
+
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::SET.request_to(route, self)
+    }
+}
+
+impl Layout for Output {
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE];
+    const DECODE: Decode<Self> = |data| Self {
+        voltage_raw: Self::VOLTAGE.get(data),
+        current_ma: Self::CURRENT.get(data),
+        temperature_raw: Self::TEMPERATURE.get_some(data, 8),
+    };
+
+    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
+    #[inline(always)]
+    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+        Self::VOLTAGE.put(self.voltage_raw, payload)?;
+        Self::CURRENT.put(self.current_ma, payload)?;
+        Self::TEMPERATURE.put_some(self.temperature_raw, payload)
     }
 }
 
@@ -280,6 +348,8 @@ impl Layout for Month {
 pub enum Message {
     /// Delay of the start.
     Delay(Delay),
+    /// Wanted output.
+    Output(Output),
     /// Month of the last reading.
     Month(Month),
 }
@@ -333,6 +403,7 @@ impl Protocol for Message {
     fn request(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x01 => frame.request(&Delay::SET, Self::Delay(frame.values())),
+            0x03 => frame.request(&Output::SET, Self::Output(frame.values())),
             0x02 => frame.request(&Month::SET, Self::Month(frame.values())),
             _ => frame.unknown(),
         }
@@ -342,6 +413,7 @@ impl Protocol for Message {
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x01 => frame.reply(&Delay::SET, Self::Delay(frame.values())),
+            0x03 => frame.reply(&Output::SET, Self::Output(frame.values())),
             0x02 => frame.reply(&Month::SET, Self::Month(frame.values())),
             _ => frame.unknown(),
         }
@@ -349,14 +421,14 @@ impl Protocol for Message {
 
     fn request_lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
-            0x01 | 0x02 => &[8],
+            0x01..=0x03 => &[8],
             _ => &[],
         }
     }
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
-            0x01 | 0x02 => &[8],
+            0x01..=0x03 => &[8],
             _ => &[],
         }
     }
@@ -365,6 +437,7 @@ impl Protocol for Message {
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Delay(message) => task.run(message),
+            Self::Output(message) => task.run(message),
             Self::Month(message) => task.run(message),
         }
     }
@@ -373,5 +446,6 @@ impl Protocol for Message {
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::of::<Delay>("Delay of the start", &[("command", 0x01)], &[&Delay::SET]),
+    Entry::of::<Output>("Wanted output", &[("command", 0x03)], &[&Output::SET]),
     Entry::of::<Month>("Month of the last reading", &[("command", 0x02)], &[&Month::SET]),
 ];

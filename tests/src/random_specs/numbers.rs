@@ -100,9 +100,6 @@ impl Draft {
     fn grid(&mut self, field: &mut Map, bits: u8) -> Grid {
         let numeral = self.numeral(field, bits);
         let (lowest, highest) = numeral.limits(bits);
-        if numeral == Numeral::Bcd {
-            return Grid { numeral, scale: Rational::ONE, offset: Rational::ZERO, lowest, highest };
-        }
         let mut chosen = |draft: &mut Self, key: &str, of: &[&'static str], percent| {
             let text = (bits <= SCALED && draft.chance(percent)).then(|| draft.one(of))?;
             field.put(key, text);

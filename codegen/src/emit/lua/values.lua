@@ -123,7 +123,9 @@ function values.integer(signal, raw)
 end
 
 function values.number(signal, raw)
-  return (double(raw) * signal.numerator + signal.offset) / signal.denominator
+  local number, rule, note = values.integer(signal, raw)
+  if not number then return nil, rule, note end
+  return (double(number) * signal.numerator + signal.offset) / signal.denominator
 end
 
 -- Has a value only on a device model.

@@ -45,7 +45,7 @@ pub struct Coding {
 impl Coding {
     /// Returns how a signal looks in Rust.
     pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal, scaled: Scaled) -> Self {
-        let limits = Limits::new(signal, scaled);
+        let (scaled, limits) = (scaled.of(signal), Limits::new(signal, scaled));
         match &signal.encoding {
             Encoding::Number { numeral, scale, offset } => Self {
                 calculated: Precision::of(scaled).filter(|_| !signal.encoding.is_unscaled()),
@@ -132,10 +132,13 @@ pub fn raw_type(signal: &Signal) -> TokenStream {
 
 /// Writes a raw value of an integer.
 pub fn raw_number(signal: &Signal, raw: i128) -> TokenStream {
-    let raw = decimal(raw);
-    match Integer::new(signal.place.width(), signal.encoding.numeral()).around {
-        None => raw,
-        Some(around) => quote!(#around::from_raw(#raw)),
+    let width = signal.place.width();
+    match (Integer::new(width, signal.encoding.numeral()).around, u64::try_from(raw)) {
+        (Some(around), Ok(digits)) => {
+            let digits = hexadecimal(digits, width);
+            quote!(#around::from_raw(#digits))
+        }
+        _ => decimal(raw),
     }
 }
 

@@ -20,7 +20,7 @@ pub enum Limits {
 impl Limits {
     /// Chooses for a signal.
     pub fn new(signal: &Signal, scaled: Scaled) -> Self {
-        match Precision::of(scaled) {
+        match Precision::of(scaled.of(signal)) {
             Some(precision) if !are_raw(signal, precision) => Self::Physical(precision),
             _ => Self::Raw,
         }

@@ -21,7 +21,9 @@ impl Unit {
             return Self { phrase, ending: Some("raw".to_owned()) };
         }
         match signal.encoding.linear() {
-            Some(linear) if scaled == Scaled::Steps && !signal.encoding.is_unscaled() => Self::of_steps(signal, linear),
+            Some(linear) if scaled.of(signal) == Scaled::Steps && !signal.encoding.is_unscaled() => {
+                Self::of_steps(signal, linear)
+            }
             _ => Self {
                 phrase: signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol)),
                 ending: signal.unit.map(|unit| unit.suffix.to_string()),
