@@ -213,8 +213,10 @@ def set_values(protocol, frame, chance):
         if number is None or isinstance(ours["value"], str) or (ours["value"] is None and not number.is_float):
             continue
         if f"{frame['message']}.{signal}" in protocol.decimal:
-            ours["value"] = chance.randrange(10 ** (number.length // 4))
-            values[name] = int(str(ours["value"]), 16)
+            # A DBC does not know a scale of theirs, so numbers that have one stay as they are.
+            if isinstance(ours["value"], int):
+                ours["value"] = chance.randrange(10 ** (number.length // 4))
+                values[name] = int(str(ours["value"]), 16)
             continue
         low, high = (number.minimum, number.maximum) if number.maximum is not None else (-1e6, 1e6)
         if isinstance(ours["value"], int):
