@@ -1,6 +1,6 @@
 //! From frames to values.
 
-use canspec_codegen::interpret::{Problem, Value, decode};
+use canspec_codegen::interpret::{Form, Frame, Problem, Value, decode, recognise};
 use canspec_codegen::model::Protocol;
 
 use super::{WIDE, decoded, feature, frame, message, model, note_texts, notes, problem, protocol, values, written};
@@ -163,6 +163,40 @@ fn what_is_no_frame_of_the_protocol_is_named() {
     let report = feature("little_endian");
     assert_eq!(problem(&report, "003#73AA0E6E28230311"), Some(Problem::Foreign));
     assert_eq!(problem(&report, "103#73AA0E6E28230311"), Some(Problem::Identifier));
+}
+
+#[test]
+fn the_identifier_is_split_only_if_it_is_of_the_protocol() {
+    let report = feature("little_endian");
+    let split =
+        |frame: &Frame| decode(&report, None, frame).map_err(|why| (why.problem, why.identifier.iter().count()));
+    let own = frame("103#73AA0E6E28230311");
+    assert_eq!(split(&Frame { form: Form::Remote, ..own.clone() }).err(), Some((Problem::Frame, 0)));
+    assert_eq!(split(&frame("003#73AA0E6E28230311")).err(), Some((Problem::Foreign, 0)));
+    let registers = feature("register_table");
+    let unknown = decode(&registers, None, &frame("423#41F00021442F0000")).expect_err("there is no such command");
+    assert_eq!(unknown.identifier.iter().copied().collect::<Vec<_>>(), [1, 2, 3]);
+}
+
+#[test]
+fn what_the_identifier_alone_decided_is_known_of_frames_that_differ_in_their_data() {
+    let winches = protocol("tests/downstream/specs/winch.yaml");
+    let first = frame("0B211201#00000000");
+    let known = recognise(&winches, None, &first).expect("a frame of the winch");
+    let other = frame("0B211201#12345678");
+    assert!(known.is_known_of(&other));
+    assert_eq!(known.decode(&other), decode(&winches, None, &other).expect("a frame of the winch"));
+    for unlike in [
+        frame("0B211202#12345678"),
+        frame("0B211201#123456"),
+        Frame { form: Form::Remote, ..other.clone() },
+        Frame { extended: false, ..other.clone() },
+    ] {
+        assert!(!known.is_known_of(&unlike), "{unlike}");
+    }
+    let registers = feature("register_table");
+    let read = frame("413#41F00021442F0000");
+    assert!(!recognise(&registers, None, &read).expect("a register").is_known_of(&read));
 }
 
 #[test]

@@ -262,6 +262,7 @@ fn a_float_keeps_the_bits_of_a_nan() {
     let data = [0, 0, 0, 0, 0x7F, 0xC0, 0x12, 0x34];
     FREQUENCY.read(&data, &mut |reading| {
         assert_eq!((reading.raw, reading.meaning), (Number::Unsigned(0x7FC0_1234), Meaning::None));
+        assert!(!reading.is_of_error_reply);
     });
     let mut payload = reply();
     assert_eq!(FREQUENCY.put(FREQUENCY.get(&data), &mut payload), Ok(()));
