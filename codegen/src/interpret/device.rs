@@ -166,7 +166,10 @@ fn identifier(
     let addresses = || pattern.addresses.iter().map(|address| (address.field, &protocol[address.address_type]));
     let to = to.filter(|to| to.name != mode.name);
     if let Some(to) = to.filter(|to| !addresses().any(|(_, known)| known.name == to.name && !is_module(known))) {
-        return Err(refuse(message, &format!("such a frame does not go to `{}`", to.name)));
+        let sender = addresses().find(|(_, known)| is_module(known));
+        let sender = sender.map(|(_, known)| format!("; say who sends it, with `--source {}`", written_address(known)));
+        let why = format!("such a frame does not go to `{}`{}", to.name, sender.unwrap_or_default());
+        return Err(refuse(message, &why));
     }
     if source.is_some() && !addresses().any(|(_, known)| is_module(known)) {
         return Err(refuse(message, &format!("the mode `{}` has no address for a source", mode.name)));

@@ -403,6 +403,24 @@ fn a_reply_of_a_module_is_the_printed_frame_and_says_that_all_is_well() {
     assert_eq!(report.is_of_module(&trio).ok(), Some(true));
 }
 
+#[test]
+fn a_frame_of_a_module_that_should_go_to_one_is_refused_with_what_names_the_sender() {
+    let made = |spec: &Protocol, (kind, message), to: &str, (signal, value): (&str, &str)| {
+        let to = Target::parse(spec, to).expect("a target");
+        let by = Sent { kind: Some(kind), access: None, model: None, message, to: Some(&to), source: Some(2) };
+        let frames = sent(spec, by, &[(signal.to_owned(), value.to_owned())]);
+        frames.map(|frames| printed(&frames[0])).map_err(|why| why.to_string())
+    };
+    let mxr = protocol("specs/mxr.yaml");
+    let reply = |to| made(&mxr, (Kind::Reply, "output_voltage"), to, ("value", "700 V"));
+    assert_eq!(reply("controller:0xF0").as_deref(), Ok("060F8010#41F00001442F0000"));
+    let why = "output_voltage: such a frame does not go to `module`; say who sends it, with `--source 0x00`";
+    assert_eq!(reply("module:2"), Err(why.to_owned()));
+    let battery = feature("whole_patterns");
+    let report = made(&battery, (Kind::Report, "limits"), "module:2", ("voltage", "50 V"));
+    assert_eq!(report, Err("limits: such a frame does not go to `module`".to_owned()));
+}
+
 /// Returns the data of the last frame of a message in parts that a module sends.
 fn last_part(spec: &str, (message, kind): (&str, Kind), signals: &[(&str, &str)]) -> Option<String> {
     let protocol = feature(spec);
