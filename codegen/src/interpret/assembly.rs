@@ -310,8 +310,8 @@ impl<M: Clone> Transfer<M> {
         (expected, count): (Option<usize>, Option<usize>),
     ) -> Assembled<M> {
         let missing = self.missing(long, model, expected);
-        let wrong = self.announced.filter(|length| !long.has_length(*length));
-        let wrong = wrong.map(|length| format!("{length} bytes are announced, which the message never has"));
+        let wrong = self.announced.and_then(|length| Some((length, long.whole().other_lengths(length)?)));
+        let wrong = wrong.map(|(length, known)| format!("{length} bytes are announced, but the message has {known}"));
         let incomplete = match (missing, wrong) {
             (Some(missing), Some(wrong)) => Some(format!("{missing}; {wrong}")),
             (missing, wrong) => missing.or(wrong),

@@ -88,8 +88,8 @@ struct Started {
 impl Started {
     /// Says that the message never has this number of bytes.
     fn wrong_length(&self, long: &LongMessage) -> Option<String> {
-        let extent = long.extent(&long.frames[self.layout]);
-        (!extent.has_length(self.size)).then(|| format!("{} bytes came, which the message never has", self.size))
+        let known = long.extent(&long.frames[self.layout]).other_lengths(self.size)?;
+        Some(format!("{} bytes came, but the message has {known}", self.size))
     }
 }
 

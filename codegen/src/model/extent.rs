@@ -63,11 +63,31 @@ impl<'a> Extent<'a> {
 
     /// Tests whether it can have some number of data bytes.
     pub fn has_length(self, length: usize) -> bool {
-        if !self.lengths().is_empty() {
-            return self.lengths().iter().any(|known| usize::from(*known) == length);
+        self.all_lengths().contains(&length)
+    }
+
+    /// Says how many data bytes it has if it cannot have `length`: `9 or 11`, `5 to 40`, or `3, 5, ... 33`.
+    pub fn other_lengths(self, length: usize) -> Option<String> {
+        let lengths = self.all_lengths();
+        if lengths.contains(&length) {
+            return None;
         }
-        let Some(field) = self.varying() else { return length == self.longest() };
-        (field.least..=field.most).any(|count| self.bytes_with(Some(count)) == length)
+        Some(match lengths.as_slice() {
+            [first, _, .., last] if last - first == lengths.len() - 1 => format!("{first} to {last}"),
+            [first, second, _, .., last] => format!("{first}, {second}, ... {last}"),
+            few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(" or "),
+        })
+    }
+
+    /// Returns the numbers of data bytes that it can have, the least first.
+    fn all_lengths(self) -> Vec<usize> {
+        let mut lengths: Vec<_> = match (self.lengths(), self.varying()) {
+            ([], Some(field)) => (field.least..=field.most).map(|count| self.bytes_with(Some(count))).collect(),
+            ([], None) => vec![self.longest()],
+            (listed, _) => listed.iter().map(|length| usize::from(*length)).collect(),
+        };
+        lengths.dedup();
+        lengths
     }
 
     /// Returns how many elements the field of varying length has in some number of data bytes.

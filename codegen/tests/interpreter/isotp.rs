@@ -53,7 +53,7 @@ fn a_request_without_fields_ends_with_its_constants() {
         (whole.incomplete.as_deref(), whole.decoded.kind, whole.decoded.signals.len()),
         (None, Kind::Request, 0)
     );
-    check(&["7E3#0422F19000000000"], (vec![(vec![0], Some("4 bytes came, which the message never has"))], vec![]));
+    check(&["7E3#0422F19000000000"], (vec![(vec![0], Some("4 bytes came, but the message has 3"))], vec![]));
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn a_message_that_is_too_long_ends_the_one_before() {
 #[test]
 fn a_wrong_size_is_told() {
     let nine = ["7E8#100962F19003E800", "7E8#2164012C00000000"];
-    check(&nine, (vec![(vec![0, 1], Some("9 bytes came, which the message never has"))], vec![]));
+    check(&nine, (vec![(vec![0, 1], Some("9 bytes came, but the message has 14"))], vec![]));
     check(&["7E8#1FFF62F19003E800"], (vec![(vec![0], Some("6 of 4095 bytes came"))], vec![]));
 }
 

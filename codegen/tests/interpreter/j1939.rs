@@ -122,7 +122,7 @@ fn a_wrong_size_is_told() {
     for (frame, why) in cases {
         check(&[frame, ONE, TWO], (vec![(vec![0], Some(&announced(why)))], vec![1, 2]));
     }
-    let thirteen = "13 bytes came, which the message never has";
+    let thirteen = "13 bytes came, but the message has 11 or 14";
     check(&["1CEC56F4#100D0002FF000200", ONE, TWO], (vec![(vec![0, 1, 2], Some(thirteen))], vec![]));
 }
 

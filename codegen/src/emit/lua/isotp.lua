@@ -73,8 +73,8 @@ end
 local function lacking(open, why)
   local came = math.floor(#open.data / 2)
   if came == open.size then
-    if has_length(open.layout.long, open.size, open.layout) then return nil end
-    return open.size .. " bytes came, which the message never has"
+    local known = other_lengths(open.layout.long, open.size, open.layout)
+    return known and string.format("%d bytes came, but the message has %s", open.size, known)
   end
   return string.format("%d of %d bytes came", came, open.size) .. (why and "; " .. why or "")
 end

@@ -32,17 +32,29 @@ local function longest(long)
   return long.lengths and long.lengths[#long.lengths] or bytes_with(long)
 end
 
-local function has_length(long, length, layout)
+-- Returns the numbers of bytes that a long message can have, the least first.
+local function all_lengths(long, layout)
   local is_bare = #signals_of(long, layout) == 0
-  if is_bare or not (long.lengths or long.elements) then return length == bytes_with(long, nil, layout) end
-  for _, known in ipairs(long.lengths or {}) do
-    if known == length then return true end
-  end
-  if long.lengths then return false end
+  if is_bare or not (long.lengths or long.elements) then return { bytes_with(long, nil, layout) } end
+  if long.lengths then return long.lengths end
+  local lengths = {}
   for count = long.elements[1], long.elements[2] do
-    if bytes_with(long, count, layout) == length then return true end
+    local length = bytes_with(long, count, layout)
+    if length ~= lengths[#lengths] then table.insert(lengths, length) end
   end
-  return false
+  return lengths
+end
+
+-- Says how many bytes a long message has, or returns nil if it can have `length`.
+local function other_lengths(long, length, layout)
+  local lengths = all_lengths(long, layout)
+  for _, known in ipairs(lengths) do
+    if known == length then return nil end
+  end
+  local first, last = lengths[1], lengths[#lengths]
+  if #lengths > 2 and last - first == #lengths - 1 then return first .. " to " .. last end
+  if #lengths > 3 then return string.format("%d, %d, ... %d", first, lengths[2], last) end
+  return table.concat(lengths, " or ")
 end
 
 -- Returns how many elements an array of varying length has in some number of bytes.

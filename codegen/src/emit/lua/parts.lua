@@ -76,8 +76,9 @@ local function cut(open, whole, lacking)
   if not open.announced then return lacking end
   whole.data = whole.data:sub(1, 2 * open.announced)
   whole.count, whole.is_counted, whole.is_ended = elements_in(open.long, open.announced), true, true
-  if has_length(open.long, open.announced) then return lacking end
-  local wrong = string.format("%d bytes are announced, which the message never has", open.announced)
+  local known = other_lengths(open.long, open.announced)
+  if not known then return lacking end
+  local wrong = string.format("%d bytes are announced, but the message has %s", open.announced, known)
   return lacking and lacking .. "; " .. wrong or wrong
 end
 

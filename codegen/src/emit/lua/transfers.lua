@@ -81,10 +81,11 @@ local function end_transfer(open, why, ended)
   end
   local what = missing(numbers, "packet", "packets")
   if not what and open.count > 0 then
-    if has_length(open.long, open.size) then
-      why = nil
+    local known = other_lengths(open.long, open.size)
+    if known then
+      what = string.format("%d bytes came, but the message has %s", open.size, known)
     else
-      what = open.size .. " bytes came, which the message never has"
+      why = nil
     end
   end
   local whole = { long = open.long, data = table.concat(data):sub(1, 2 * open.size) }
