@@ -8,6 +8,7 @@ use crate::model::{Doc, Encoding, Numeral, TextForm};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
+use crate::syntax::tree::Path;
 use crate::words::{NUMBER_FORMATS, NumberFormat};
 
 impl Resolver<'_> {
@@ -75,10 +76,24 @@ impl Resolver<'_> {
     fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
         self.whole_bytes(name, merged, place, "a text has")?;
         let fill = match &merged.field.fill {
-            Some(text) => self.integer(&merged.path(self.diagnostics, Key::Fill), text, 0, u8::MAX)?,
+            Some(text) => {
+                let path = merged.path(self.diagnostics, Key::Fill);
+                self.filling(&path, text)?
+            }
             None => 0,
         };
         Some(Encoding::Text(TextForm::Ascii { fill }))
+    }
+
+    /// Reads the byte that fills up a text. A character is refused, since the character `0` is not the byte 0.
+    fn filling(&mut self, path: &Path, text: &str) -> Option<u8> {
+        let &[byte] = text.as_bytes() else { return self.integer(path, text, 0, u8::MAX) };
+        if byte.is_ascii_digit() {
+            return self.integer(path, text, 0, u8::MAX);
+        }
+        let (message, help) = (format!("`{text}` is not a number"), format!("write `{byte:#04X}` for this character"));
+        self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
+        None
     }
 
     fn hexadecimal(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
