@@ -3,61 +3,36 @@
 use core::ptr;
 
 use crate::address::{Addressing, Kind, Mode, Who};
+use crate::filter::{IdFilter, Required};
 use crate::plumbing::{Shown, Way};
 use crate::{Bits, Data, Error, Filter, Layout, Payload, Protocol};
 
-/// How a message travels by one access: its frames, what they show, and who answers.
+/// How messages travel: the kinds of frames, what all of them show, and who answers.
 #[derive(Clone, Copy, Debug)]
-pub struct Exchange {
-    pub(crate) message: &'static str,
-    access: &'static str,
-    pub(crate) length: u8,
+pub struct Access {
+    name: &'static str,
     has_values: bool,
     is_from_controller: bool,
-    pub(crate) answers: &'static [Option<Who>],
-    /// The modes in which it is offered, as bits from the lowest on. Those beyond 8 have none.
-    offered: u8,
-    models: &'static [u8],
+    answers: &'static [Option<Who>],
     set: Option<&'static str>,
-    pub(crate) request: Option<Filter>,
-    pub(crate) reply: Option<Filter>,
+    request: Option<Filter>,
+    reply: Option<Filter>,
     report: Option<Filter>,
-    pub(crate) refusal: Option<&'static Filter>,
 }
 
-impl Exchange {
-    /// Returns an access without a message and without frames. `answers` says who answers in each
-    /// mode.
-    pub const fn new(access: &'static str, answers: &'static [Option<Who>]) -> Self {
+impl Access {
+    /// Returns an access without frames. `answers` says who answers in each mode.
+    pub const fn new(name: &'static str, answers: &'static [Option<Who>]) -> Self {
         Self {
-            message: "",
-            access,
-            length: 8,
+            name,
             has_values: false,
             is_from_controller: false,
             answers,
-            offered: offered(answers),
-            models: &[],
             set: None,
             request: None,
             reply: None,
             report: None,
-            refusal: None,
         }
-    }
-
-    /// Returns this access for a message, whose frames also show what `own` requires.
-    #[must_use]
-    pub const fn of(self, message: &'static str, own: Filter) -> Self {
-        let Self { request, reply, report, .. } = self;
-        let [request, reply, report] = [narrowed(request, own), narrowed(reply, own), narrowed(report, own)];
-        Self { message, request, reply, report, ..self }
-    }
-
-    /// Sets who answers in each mode.
-    #[must_use]
-    pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
-        Self { answers, offered: offered(answers), ..self }
     }
 
     /// Says that a request carries values, or travels by a transport.
@@ -66,19 +41,7 @@ impl Exchange {
         Self { has_values: true, ..self }
     }
 
-    /// Sets the number of data bytes of its frames.
-    #[must_use]
-    pub const fn length(self, length: u8) -> Self {
-        Self { length, ..self }
-    }
-
-    /// Sets the device models that have the message, by number. Without them every model has it.
-    #[must_use]
-    pub const fn models(self, models: &'static [u8]) -> Self {
-        Self { models, ..self }
-    }
-
-    /// Sets the name of the set of frames, if the message travels as its member.
+    /// Sets the name of the set of frames, if messages travel as its members.
     #[must_use]
     pub const fn member_of(self, set: &'static str) -> Self {
         Self { set: Some(set), ..self }
@@ -109,44 +72,121 @@ impl Exchange {
         Self { is_from_controller: true, request: self.report, ..self }
     }
 
-    /// Sets the value that its frames have in a field of the identifier when they are built. Any is
-    /// accepted.
+    /// Returns how a message travels by this access. Its frames also show what `own` requires.
     #[must_use]
-    pub const fn send_id(self, bits: Bits, value: u32) -> Self {
-        let Self { request, reply, report, .. } = self;
-        let [request, reply, report] =
-            [sending(request, bits, value), sending(reply, bits, value), sending(report, bits, value)];
-        Self { request, reply, report, ..self }
+    pub const fn of(&'static self, message: &'static str, own: Filter) -> Exchange {
+        Exchange {
+            access: self,
+            message,
+            own: own.required(),
+            length: 8,
+            answers: self.answers,
+            offered: offered(self.answers),
+            models: &[],
+            sent: None,
+            refusal: None,
+        }
     }
 
-    /// Sets data bits that a request has as 1 although nothing names them. Any are accepted.
+    /// Returns what a kind of frame shows, whatever the message.
+    #[inline(always)]
+    const fn filter(&self, kind: Kind) -> Option<Filter> {
+        match kind {
+            Kind::Request => self.request,
+            Kind::Reply => self.reply,
+            Kind::Report => self.report,
+        }
+    }
+}
+
+/// What the frames of a message have that are built, although any is accepted there.
+#[derive(Clone, Copy, Debug)]
+pub struct Sent {
+    id: IdFilter,
+    request: Data,
+    reply: Data,
+    report: Data,
+}
+
+impl Sent {
+    /// Nothing.
+    pub const NOTHING: Self = Self { id: IdFilter::ANY, request: [0; 8], reply: [0; 8], report: [0; 8] };
+
+    /// Sets the value of a field of the identifier.
     #[must_use]
-    pub const fn fill_request(self, ones: Data) -> Self {
-        let request = match self.request {
-            Some(request) => Some(request.filled(ones)),
-            None => None,
-        };
-        Self { request, ..self }
+    pub const fn id(self, bits: Bits, value: u32) -> Self {
+        Self { id: self.id.id(bits, value), ..self }
     }
 
-    /// Sets data bits that a reply has as 1 although nothing names them. Any are accepted.
+    /// Sets data bits that a request has as 1 although nothing names them.
     #[must_use]
-    pub const fn fill_reply(self, ones: Data) -> Self {
-        let reply = match self.reply {
-            Some(reply) => Some(reply.filled(ones)),
-            None => None,
-        };
-        Self { reply, ..self }
+    pub const fn request(self, ones: Data) -> Self {
+        Self { request: ones, ..self }
     }
 
-    /// Sets data bits that a report has as 1 although nothing names them. Any are accepted.
+    /// Sets data bits that a reply has as 1 although nothing names them.
     #[must_use]
-    pub const fn fill_report(self, ones: Data) -> Self {
-        let report = match self.report {
-            Some(report) => Some(report.filled(ones)),
-            None => None,
-        };
-        Self { report, ..self }
+    pub const fn reply(self, ones: Data) -> Self {
+        Self { reply: ones, ..self }
+    }
+
+    /// Sets data bits that a report has as 1 although nothing names them.
+    #[must_use]
+    pub const fn report(self, ones: Data) -> Self {
+        Self { report: ones, ..self }
+    }
+
+    /// Returns the data bits that a kind of frame has as 1 although nothing names them.
+    #[inline(always)]
+    const fn ones(&self, kind: Kind) -> Data {
+        match kind {
+            Kind::Request => self.request,
+            Kind::Reply => self.reply,
+            Kind::Report => self.report,
+        }
+    }
+}
+
+/// How a message travels by one access: its frames, what they show, and who answers.
+///
+/// There is one for each message and access, so it is small. What messages share stands in the access.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange {
+    access: &'static Access,
+    pub(crate) message: &'static str,
+    own: Required,
+    pub(crate) length: u8,
+    /// The modes in which it is offered, as bits from the lowest on. Those beyond 8 have none.
+    offered: u8,
+    pub(crate) answers: &'static [Option<Who>],
+    models: &'static [u8],
+    sent: Option<&'static Sent>,
+    pub(crate) refusal: Option<&'static Filter>,
+}
+
+impl Exchange {
+    /// Sets who answers in each mode.
+    #[must_use]
+    pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
+        Self { answers, offered: offered(answers), ..self }
+    }
+
+    /// Sets the number of data bytes of its frames.
+    #[must_use]
+    pub const fn length(self, length: u8) -> Self {
+        Self { length, ..self }
+    }
+
+    /// Sets the device models that have the message, by number. Without them every model has it.
+    #[must_use]
+    pub const fn models(self, models: &'static [u8]) -> Self {
+        Self { models, ..self }
+    }
+
+    /// Sets what its frames have that are built, although any is accepted there.
+    #[must_use]
+    pub const fn sending(self, sent: &'static Sent) -> Self {
+        Self { sent: Some(sent), ..self }
     }
 
     /// Adds the refusal, which answers a request in place of the reply. It is another message's
@@ -163,7 +203,7 @@ impl Exchange {
 
     /// Returns the name of the set of frames, if the message travels as its member.
     pub const fn set(&self) -> Option<&'static str> {
-        self.set
+        self.access.set
     }
 
     /// Returns the number of data bytes, or the least one if there are several.
@@ -172,27 +212,28 @@ impl Exchange {
     }
 
     /// Returns what a kind of frame shows.
+    #[inline(always)]
     pub const fn filter(&self, kind: Kind) -> Option<Filter> {
-        match kind {
-            Kind::Request => self.request,
-            Kind::Reply => self.reply,
-            Kind::Report => self.report,
+        match (self.access.filter(kind), self.sent) {
+            (Some(filter), None) => Some(filter.requiring(self.own)),
+            (Some(filter), Some(sent)) => Some(filter.requiring(self.own).sending(sent.id).filled(sent.ones(kind))),
+            (None, _) => None,
         }
     }
 
     /// Tests whether a request carries values, or travels by a transport.
     pub const fn has_values(&self) -> bool {
-        self.has_values
+        self.access.has_values
     }
 
     /// Returns the name of the access.
     pub const fn access(&self) -> &'static str {
-        self.access
+        self.access.name
     }
 
     /// Tests whether this access has a request without values.
     pub(crate) fn asks_by(&self, access: &str) -> bool {
-        self.access == access && self.request.is_some() && !self.has_values
+        self.access.name == access && self.access.request.is_some() && !self.access.has_values
     }
 
     /// Tests whether a device model has the message. An unknown model has every message.
@@ -229,7 +270,7 @@ impl Exchange {
 
     /// Tests whether this is the same access to the same message.
     pub(crate) fn is(&self, other: &Self) -> bool {
-        ptr::eq(self, other) || (self.message, self.access) == (other.message, other.access)
+        ptr::eq(self, other) || (self.message, self.access()) == (other.message, other.access())
     }
 
     /// Tests whether a kind of its frames goes to a module. If it does, it keeps to the limits of what
@@ -239,7 +280,7 @@ impl Exchange {
         match kind {
             Kind::Request => true,
             Kind::Reply => false,
-            Kind::Report => P::CONTROLLER_REPORTS && self.is_from_controller,
+            Kind::Report => P::CONTROLLER_REPORTS && self.access.is_from_controller,
         }
     }
 
@@ -261,7 +302,7 @@ impl Exchange {
 
     #[cold]
     pub(crate) fn no_mode(&self, mode: Option<&Mode>) -> Error {
-        Error::Mode { message: self.message, access: self.access, mode: mode.map(|mode| mode.name) }
+        Error::Mode { message: self.message, access: self.access(), mode: mode.map(|mode| mode.name) }
     }
 }
 
@@ -275,18 +316,4 @@ const fn offered(mut answers: &[Option<Who>]) -> u8 {
         (answers, bit) = (others, bit << 1);
     }
     bits
-}
-
-const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {
-    match filter {
-        Some(filter) => Some(filter.and(own)),
-        None => None,
-    }
-}
-
-const fn sending(filter: Option<Filter>, bits: Bits, value: u32) -> Option<Filter> {
-    match filter {
-        Some(filter) => Some(filter.send_id(bits, value)),
-        None => None,
-    }
 }

@@ -88,6 +88,14 @@ impl IdFilter {
     }
 }
 
+/// Bits that a frame must show.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Required {
+    id: IdFilter,
+    data_mask: Data,
+    data_value: Data,
+}
+
 /// What the identifier and the data of a frame must show, and what is written when such a frame is
 /// built.
 ///
@@ -139,6 +147,7 @@ impl Filter {
 
     /// Writes 1 to these bits of the data, and accepts any.
     #[must_use]
+    #[inline(always)]
     pub(crate) const fn filled(self, ones: Data) -> Self {
         Self { data_value: (word(self.data_value) | word(ones)).to_be_bytes(), ..self }
     }
@@ -192,10 +201,28 @@ impl Filter {
     /// Also requires what `other` requires. If both require a bit, `other` counts.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
-        let mask = word(other.data_mask);
+        self.requiring(other.required())
+    }
+
+    /// Returns the bits that it requires.
+    pub(crate) const fn required(&self) -> Required {
+        let Self { data_mask, data_value, .. } = *self;
+        Required { id: IdFilter { mask: self.id_mask, value: self.id_value }, data_mask, data_value }
+    }
+
+    /// Also requires some bits, and those replace its own.
+    #[inline(always)]
+    pub(crate) const fn requiring(self, Required { id, data_mask, data_value }: Required) -> Self {
+        let mask = word(data_mask);
+        let data_value = ((word(self.data_value) & !mask) | (word(data_value) & mask)).to_be_bytes();
         let data_mask = (word(self.data_mask) | mask).to_be_bytes();
-        let data_value = ((word(self.data_value) & !mask) | (word(other.data_value) & mask)).to_be_bytes();
-        Self { data_mask, data_value, ..self.id_bits(other.id_mask, other.id_value) }
+        Self { data_mask, data_value, ..self.id_bits(id.mask, id.value) }
+    }
+
+    /// Writes some bits of the identifier, and accepts any.
+    #[inline(always)]
+    pub(crate) const fn sending(self, IdFilter { mask, value }: IdFilter) -> Self {
+        Self { id_mask: self.id_mask & !mask, id_value: (self.id_value & !mask) | value, ..self }
     }
 
     /// Tests whether a frame can show what both require.

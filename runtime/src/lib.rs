@@ -82,7 +82,7 @@ pub use document::Document;
 pub use embedded_can;
 pub use entry::Entry;
 pub use error::Error;
-pub use exchange::Exchange;
+pub use exchange::{Access, Exchange};
 pub use filter::{Filter, Selector};
 pub use frame::Frame;
 pub use layout::Layout;

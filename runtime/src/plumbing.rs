@@ -9,6 +9,7 @@ pub use defmt;
 pub use serde;
 
 pub use crate::address::{Address, Pattern, Who};
+pub use crate::exchange::Sent;
 pub use crate::filter::IdFilter;
 pub use crate::incoming::Incoming;
 pub use crate::layout::{AnySignals, Decode, Signals, Task};
@@ -32,7 +33,7 @@ pub use crate::word::{Legend, Word};
 pub mod prelude {
     pub use super::{
         Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern,
-        Piece, Refusing, Said, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
+        Piece, Refusing, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
         right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};

@@ -51,7 +51,7 @@ impl Exchange {
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
         let who = self.answers.get(target.mode()).copied().flatten();
-        let (Some(who), Some(request)) = (who, self.request) else {
+        let (Some(who), Some(request)) = (who, self.filter(Kind::Request)) else {
             return Err(self.no_mode(T::Protocol::MODES.get(target.mode())));
         };
         let filter = request.narrowed(target.request(sender)?);
@@ -64,7 +64,7 @@ impl Exchange {
             (Some(filter), Some(who)) => filter.id_narrowed(who),
             _ => IdFilter::NONE,
         };
-        let (reply, refusal) = (shown(self.reply.as_ref()), shown(self.refusal));
+        let (reply, refusal) = (shown(self.filter(Kind::Reply).as_ref()), shown(self.refusal));
         Ok(Request { frame, exchange: self, who, reply, refusal, carried: PhantomData })
     }
 }
@@ -133,7 +133,8 @@ impl<P, R> Request<P, R> {
 
     #[inline]
     fn reply_filter(&self) -> Option<Filter> {
-        self.exchange.reply.filter(|_| self.reply != IdFilter::NONE).map(|reply| reply.narrowed(self.reply))
+        let reply = self.exchange.filter(Kind::Reply).filter(|_| self.reply != IdFilter::NONE)?;
+        Some(reply.narrowed(self.reply))
     }
 
     /// Returns the same request, whatever its replies carry.
@@ -221,20 +222,21 @@ impl<P: Protocol, R> Request<P, R> {
             return None;
         }
         let frame = Frame::copied(id, P::FRAME.is_extended(), None, frame)?;
-        let selectors = |filter: Option<&Filter>| selectors_of::<P>(filter, &frame);
-        let refusal = is_refusal.then(|| selectors(self.exchange.refusal)).flatten().map(Answer::Refusal);
-        let reply = || is_reply.then(|| selectors(self.exchange.reply.as_ref())).flatten().map(Answer::Values);
-        Some((refusal.or_else(reply)?, frame))
+        let refusal = || selectors_of::<P>(|| self.exchange.refusal.copied(), &frame).map(Answer::Refusal);
+        let values = || selectors_of::<P>(|| self.exchange.filter(Kind::Reply), &frame).map(Answer::Values);
+        let refused = is_refusal.then(refusal).flatten();
+        let answer = refused.or_else(|| is_reply.then(values).flatten());
+        Some((answer?, frame))
     }
 }
 
 /// Returns the selectors in the data of a frame whose data shows what a filter requires.
 #[inline(always)]
-fn selectors_of<P: Protocol>(filter: Option<&Filter>, frame: &Frame) -> Option<&'static [Selector]> {
+fn selectors_of<P: Protocol>(filter: impl FnOnce() -> Option<Filter>, frame: &Frame) -> Option<&'static [Selector]> {
     if !P::DATA_SELECTORS {
         return Some(&[]);
     }
-    filter.filter(|filter| filter.matches_data(&frame.bytes())).map(Filter::data_selectors)
+    filter().filter(|filter| filter.matches_data(&frame.bytes())).map(|filter| filter.data_selectors())
 }
 
 /// How a frame with some selectors in its data answers a request.

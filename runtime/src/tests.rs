@@ -7,10 +7,10 @@ use std::string::ToString;
 
 use heaters::{FRAME, HEAT, Heat, Identifier, Message, To, decode, frame, mode_of};
 
-use crate::plumbing::{Decode, Refusing};
+use crate::plumbing::{Decode, Refusing, Sent};
 use crate::{
-    AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number, Payload,
-    Problem, Reading, Received, Replies, Request, Route, Signal, StatusBit,
+    Access, AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number,
+    Payload, Problem, Reading, Received, Replies, Request, Route, Signal, StatusBit,
 };
 
 /// A request that waits for its reply, whatever that carries.
@@ -257,18 +257,20 @@ fn a_sender_is_the_usual_one_or_else_the_first_one() {
 #[test]
 fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
     const PRIORITY: Bits = Bits::new(28, 26);
-    let every = Exchange::new("set", &[None; 3]).request(FRAME).reply(FRAME).report(FRAME).of("boost", FRAME);
-    let own = every.send_id(PRIORITY, 4).fill_request([0xFF, 0, 0, 0, 0, 0, 0, 0]);
+    const ALL: Access = Access::new("set", &[None; 3]).request(FRAME).reply(FRAME).report(FRAME);
+    const SENT: Sent = Sent::NOTHING.id(PRIORITY, 4).request([0xFF; 8]).reply([0x0F; 8]).report([0xF0; 8]);
+    let every = ALL.of("boost", FRAME);
+    let own = every.sending(&SENT);
     let blank = |kind| own.filter(kind).expect("all kinds are there").frame(2);
     assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).raw_id() >> 26), [4; 3]);
-    assert_eq!([Kind::Request, Kind::Reply].map(|kind| blank(kind).bytes()[0]), [0xFF, 0]);
+    assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).bytes()[0]), [0xFF, 0x0F, 0xF0]);
     let masks = [own, every].map(|exchange| exchange.filter(Kind::Request).map(|filter| filter.id_mask()));
     assert_eq!(masks[0], masks[1]);
 }
 
 #[test]
 fn a_message_of_some_device_models_is_refused_for_the_others() {
-    const BOOST: Exchange = Exchange::new("set", &[None; 3]).of("boost", FRAME).length(4).models(&[1, 4]);
+    const BOOST: Exchange = Access::new("set", &[None; 3]).of("boost", FRAME).length(4).models(&[1, 4]);
     let refused = Err(Error::Model { message: "boost" });
     assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
     assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));

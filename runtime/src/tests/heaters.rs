@@ -2,8 +2,8 @@
 
 use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Pattern, Refusing, Shown, Task, Way, Who};
 use crate::{
-    AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout,
-    Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
+    Access, AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields,
+    Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
 };
 
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -137,29 +137,29 @@ pub const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0
 impl Heat {
     pub const POWER: Signal<u16, f64> =
         Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
-    pub const SET: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+    pub const SET: Exchange = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .with_values()
         .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
         .reply(FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
         .of("heat", FRAME.id(COMMAND, 7))
         .length(4)
         .refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1));
-    pub const READ: Exchange = Exchange::new("read", &[None, Some(Who::Coordinator), None])
+    pub const READ: Exchange = Access::new("read", &[None, Some(Who::Coordinator), None])
         .request(FRAME)
         .reply(FRAME)
         .of("heat", FRAME.id(COMMAND, 8))
         .length(4);
-    pub const ASK: Exchange = Exchange::new("ask", &[Some(Who::One), Some(Who::Each), None])
+    pub const ASK: Exchange = Access::new("ask", &[Some(Who::One), Some(Who::Each), None])
         .request(FRAME)
         .reply(FRAME)
         .of("heat", FRAME.id(COMMAND, 0x0C))
         .length(4);
     pub const REPORT: Exchange =
-        Exchange::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+        Access::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
     pub const REPORT_1: Exchange = Self::REPORT.models(&[1]);
     pub const REPORT_2: Exchange =
-        Exchange::new("report of model 2", &[None; 3]).report(FRAME).of("heat", FRAME).length(4).models(&[2]);
-    pub const PROBE: Exchange = Exchange::new("probe", &[None; 3]).of("heat", FRAME).length(2);
+        Access::new("report of model 2", &[None; 3]).report(FRAME).of("heat", FRAME).length(4).models(&[2]);
+    pub const PROBE: Exchange = Access::new("probe", &[None; 3]).of("heat", FRAME).length(2);
 
     pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
         Self::SET.request_to(route, &self)

@@ -266,7 +266,7 @@ pub const ALL_MODE: Mode = Mode {
 };
 
 /// Set. Section 2.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Coordinator)])
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Coordinator)])
     .with_values()
     .request(FRAME)
     .reply(FRAME);

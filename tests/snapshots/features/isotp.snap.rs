@@ -223,23 +223,23 @@ pub const UNIT_MODE: Mode = Mode {
 };
 
 /// Read.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::Each), Some(Who::One)])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::Each), Some(Who::One)])
     .with_values()
     .request(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR]).data(SERVICE_SELECTOR.place, 0x21))
     .reply(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR]).data(SERVICE_SELECTOR.place, 0x61));
 
 /// Reset.
-pub const RESET_ACCESS: Exchange = Exchange::new("reset", &[Some(Who::Each), Some(Who::One)])
+pub const RESET_ACCESS: Access = Access::new("reset", &[Some(Who::Each), Some(Who::One)])
     .with_values()
     .request(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x11))
     .reply(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x51));
 
 /// Frames of the transport, sent by the module. Section 1.
-pub const TP_OF_MODULE_ACCESS: Exchange =
-    Exchange::new("tp_of_module", &[Some(Who::Each), Some(Who::One)]).report(FRAME.selectors(&[PCI_SELECTOR]));
+pub const TP_OF_MODULE_ACCESS: Access =
+    Access::new("tp_of_module", &[Some(Who::Each), Some(Who::One)]).report(FRAME.selectors(&[PCI_SELECTOR]));
 
 /// Frames of the transport, sent by the controller. Section 1.
-pub const TP_OF_CONTROLLER_ACCESS: Exchange = Exchange::new("tp_of_controller", &[Some(Who::Each), Some(Who::One)])
+pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::Each), Some(Who::One)])
     .with_values()
     .report(FRAME.selectors(&[PCI_SELECTOR]))
     .from_controller();
@@ -391,12 +391,12 @@ impl TpSingleFrame {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
         .length(2)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
         .length(2)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -491,11 +491,11 @@ impl TpFirstFrame {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -556,12 +556,12 @@ impl TpConsecutiveFrame {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
         .length(2)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
         .length(2)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -669,12 +669,12 @@ impl TpFlowControl {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
         .length(3)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
         .length(3)
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors

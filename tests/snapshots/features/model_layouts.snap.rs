@@ -115,7 +115,7 @@ pub const PUMP_MODE: Mode = Mode {
 };
 
 /// Report.
-pub const REPORT_ACCESS: Exchange = Exchange::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -150,12 +150,12 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
     .request(FRAME.id(Identifier::SET, 0x0))
     .reply(FRAME.id(Identifier::SET, 0x0));
 
 /// Set.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One)])
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)])
     .with_values()
     .request(FRAME.id(Identifier::SET, 0x1))
     .reply(FRAME.id(Identifier::SET, 0x1));

@@ -214,7 +214,7 @@ pub const SERVICE_MODE: Mode = Mode {
 };
 
 /// Offer.
-pub const OFFER_ACCESS: Exchange = Exchange::new("offer", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody)])
+pub const OFFER_ACCESS: Access = Access::new("offer", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody)])
     .with_values()
     .request(FRAME)
     .reply(FRAME);

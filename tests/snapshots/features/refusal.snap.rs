@@ -121,13 +121,13 @@ pub const DEVICE_MODE: Mode = Mode {
 };
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)])
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
     .request(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x03))
     .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x04));
 
 /// Refuse. Section 3.
-pub const REFUSE_ACCESS: Exchange = Exchange::new("refuse", &[Some(Who::One)])
+pub const REFUSE_ACCESS: Access = Access::new("refuse", &[Some(Who::One)])
     .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x80));
 
 /// Speed: `index` 0x07. Section 2.

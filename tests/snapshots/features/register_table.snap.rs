@@ -149,7 +149,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
     .request(
         FRAME
             .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
@@ -164,7 +164,7 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
     );
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)])
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
     .request(
         FRAME

@@ -123,14 +123,14 @@ pub const DEVICE_MODE: Mode = Mode {
 /// Read. Section 2.
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
     .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
     .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x41));
 
 /// Read. Section 2.
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
-pub const READ_ACCESS_2: Exchange = Exchange::new("read", &[Some(Who::One)])
+pub const READ_ACCESS_2: Access = Access::new("read", &[Some(Who::One)])
     .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
     .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x42));
 

@@ -178,7 +178,7 @@ pub const VEHICLE_MODE: Mode = Mode {
 };
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
 
 /// Set the current: `command` 0x012. Section 2.
 /// - [`write`](WRITE_ACCESS): the module answers (`vehicle`).
@@ -197,12 +197,12 @@ impl SetCurrent {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS
-        .of("set_current", FRAME.id(Identifier::COMMAND, 0x012))
-        .length(4)
-        .send_id(Identifier::PRIORITY, 0x4)
-        .fill_request([0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
-        .fill_reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]);
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_current", FRAME.id(Identifier::COMMAND, 0x012)).length(4).sending(
+        &Sent::NOTHING
+            .id(Identifier::PRIORITY, 0x4)
+            .request([0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
+            .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+    );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
@@ -239,11 +239,11 @@ impl Stop {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS
-        .of("stop", FRAME.id(Identifier::COMMAND, 0x013))
-        .length(4)
-        .fill_request([0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
-        .fill_reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]);
+    pub const WRITE: Exchange = WRITE_ACCESS.of("stop", FRAME.id(Identifier::COMMAND, 0x013)).length(4).sending(
+        &Sent::NOTHING
+            .request([0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
+            .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+    );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors

@@ -143,7 +143,7 @@ pub const SDO_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
     .request(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x40))
     .reply(
         FRAME
@@ -153,13 +153,13 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
     );
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)])
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
     .request(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x23))
     .reply(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x60));
 
 /// Abort. Section 2.
-pub const ABORT_ACCESS: Exchange = Exchange::new("abort", &[Some(Who::One)])
+pub const ABORT_ACCESS: Access = Access::new("abort", &[Some(Who::One)])
     .reply(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x80));
 
 /// Aborted value. Section 3.

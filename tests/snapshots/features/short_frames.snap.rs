@@ -159,12 +159,12 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Tell. Section 4.
-pub const TELL_ACCESS: Exchange = Exchange::new("tell", &[Some(Who::Nobody), None])
+pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Nobody), None])
     .with_values()
     .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
 /// Ask. Section 5.
-pub const ASK_ACCESS: Exchange = Exchange::new("ask", &[None, Some(Who::One)])
+pub const ASK_ACCESS: Access = Access::new("ask", &[None, Some(Who::One)])
     .request(FRAME.id(Identifier::FUNCTION, 0x6))
     .reply(FRAME.id(Identifier::FUNCTION, 0x5));
 

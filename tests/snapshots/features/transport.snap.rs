@@ -165,29 +165,28 @@ pub const EVERYBODY_MODE: Mode = Mode {
 };
 
 /// Of vehicle. Section 1.
-pub const OF_VEHICLE_ACCESS: Exchange = Exchange::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const OF_VEHICLE_ACCESS: Access = Access::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(FRAME);
 
 /// Of charger. Section 1.
-pub const OF_CHARGER_ACCESS: Exchange =
-    Exchange::new("of_charger", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+pub const OF_CHARGER_ACCESS: Access =
+    Access::new("of_charger", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
 
 /// Frames of the transport, sent by the module. Section 2.
-pub const TP_OF_MODULE_ACCESS: Exchange =
-    Exchange::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
+pub const TP_OF_MODULE_ACCESS: Access =
+    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
 
 /// Frames of the transport, sent by the module. Section 2.
-pub const TP_OF_MODULE_ACCESS_2: Exchange =
-    Exchange::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
 
 /// Frames of the transport, sent by the controller. Section 2.
-pub const TP_OF_CONTROLLER_ACCESS: Exchange = Exchange::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
+pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
     .with_values()
     .report(FRAME.selectors(&[CONTROL_SELECTOR]))
     .from_controller();
 
 /// Frames of the transport, sent by the controller. Section 2.
-pub const TP_OF_CONTROLLER_ACCESS_2: Exchange =
-    Exchange::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
+pub const TP_OF_CONTROLLER_ACCESS_2: Access =
+    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
 
 /// Battery, with the date only in the longer form: `format` 0x02. Section 3.
 /// - [`of_vehicle`](OF_VEHICLE_ACCESS): the vehicle sends it (`peer`, `everybody`).
@@ -330,11 +329,11 @@ impl TpRequestToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -391,13 +390,13 @@ impl TpClearToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -447,13 +446,13 @@ impl TpEndOfMessage {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -503,13 +502,13 @@ impl TpBroadcast {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -555,13 +554,13 @@ impl TpAbort {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -603,11 +602,13 @@ impl TpData {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange =
-        TP_OF_MODULE_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
+    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
+        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
-    pub const TP_OF_CONTROLLER: Exchange =
-        TP_OF_CONTROLLER_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
+    pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
+        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors

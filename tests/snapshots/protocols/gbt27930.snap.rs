@@ -245,51 +245,50 @@ pub const TIMING: Timing = Timing::NONE.with_messages(&[
 /// What the charger sends in cycles. Section 3.5, 4, 8.1.
 ///
 /// A message whose fields are all optional may be left out.
-pub const CHARGER_CYCLE_ACCESS: Exchange =
-    Exchange::new("charger_cycle", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+pub const CHARGER_CYCLE_ACCESS: Access =
+    Access::new("charger_cycle", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
 
 /// What the BMS sends in cycles. Section 3.5, 4, 8.1.
 ///
 /// A message whose fields are all optional may be left out.
-pub const BMS_CYCLE_ACCESS: Exchange = Exchange::new("bms_cycle", &[Some(Who::One), None]).report(FRAME);
+pub const BMS_CYCLE_ACCESS: Access = Access::new("bms_cycle", &[Some(Who::One), None]).report(FRAME);
 
 /// What the charger sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
-pub const CHARGER_EVENT_ACCESS: Exchange =
-    Exchange::new("charger_event", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+pub const CHARGER_EVENT_ACCESS: Access =
+    Access::new("charger_event", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
 
 /// What the charger sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
-pub const CHARGER_EVENT_ACCESS_2: Exchange =
-    Exchange::new("charger_event", &[Some(Who::One), None]).report(FRAME).from_controller();
+pub const CHARGER_EVENT_ACCESS_2: Access =
+    Access::new("charger_event", &[Some(Who::One), None]).report(FRAME).from_controller();
 
 /// What the BMS sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
-pub const BMS_EVENT_ACCESS: Exchange = Exchange::new("bms_event", &[Some(Who::One), None]).report(FRAME);
+pub const BMS_EVENT_ACCESS: Access = Access::new("bms_event", &[Some(Who::One), None]).report(FRAME);
 
 /// Frames of the transport, sent by the module. Section 7.
-pub const TP_OF_MODULE_ACCESS: Exchange =
-    Exchange::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
+pub const TP_OF_MODULE_ACCESS: Access =
+    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
 
 /// Frames of the transport, sent by the module. Section 7.
-pub const TP_OF_MODULE_ACCESS_2: Exchange =
-    Exchange::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
 
 /// Frames of the transport, sent by the controller. Section 7.
-pub const TP_OF_CONTROLLER_ACCESS: Exchange = Exchange::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
+pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
     .with_values()
     .report(FRAME.selectors(&[CONTROL_SELECTOR]))
     .from_controller();
 
 /// Frames of the transport, sent by the controller. Section 7.
-pub const TP_OF_CONTROLLER_ACCESS_2: Exchange =
-    Exchange::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
+pub const TP_OF_CONTROLLER_ACCESS_2: Access =
+    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
 
 /// Whether the charger has recognised the BMS. Section 5.3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -2016,8 +2015,9 @@ impl Brm {
         Signal::new("software_year", Place::bytes(1, 0)).specials(&[(65_535, "not_available")]).absent(),
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("brm", FRAME.id(Identifier::FORMAT, 0x02)).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("brm", FRAME.id(Identifier::FORMAT, 0x02))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Brm {
@@ -2187,8 +2187,9 @@ impl Bcp {
             .absent(),
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bcp", FRAME.id(Identifier::FORMAT, 0x06)).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bcp", FRAME.id(Identifier::FORMAT, 0x06))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Bcp {
@@ -2423,8 +2424,10 @@ impl Bro {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bro", FRAME.id(Identifier::FORMAT, 0x09)).length(1).send_id(Identifier::PRIORITY, 0x4);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bro", FRAME.id(Identifier::FORMAT, 0x09))
+        .length(1)
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
 }
 
 impl Layout for Bro {
@@ -2455,8 +2458,10 @@ impl Cro {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange =
-        CHARGER_CYCLE_ACCESS.of("cro", FRAME.id(Identifier::FORMAT, 0x0A)).length(1).send_id(Identifier::PRIORITY, 0x4);
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
+        .of("cro", FRAME.id(Identifier::FORMAT, 0x0A))
+        .length(1)
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
@@ -2623,8 +2628,9 @@ impl Bcs {
             .absent(),
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bcs", FRAME.id(Identifier::FORMAT, 0x11)).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bcs", FRAME.id(Identifier::FORMAT, 0x11))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Bcs {
@@ -2720,7 +2726,7 @@ impl Ccs {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
         .of("ccs", FRAME.id(Identifier::FORMAT, 0x12))
         .length(7)
-        .fill_request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]);
+        .sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
@@ -2880,7 +2886,7 @@ impl Bsm {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bsm", FRAME.id(Identifier::FORMAT, 0x13))
         .length(7)
-        .fill_report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00]);
+        .sending(&Sent::NOTHING.report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00]));
 }
 
 impl Layout for Bsm {
@@ -2964,8 +2970,10 @@ impl Bmv {
     pub const CELL_GROUP: LongSignal<u8> =
         LongSignal::new(0, Signal::new("cell_group", Place::byte(1).bits(7, 4))).every(2);
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bmv", FRAME.id(Identifier::FORMAT, 0x15)).length(2).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bmv", FRAME.id(Identifier::FORMAT, 0x15))
+        .length(2)
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Bmv {
@@ -3126,8 +3134,10 @@ impl Bmt {
     )
     .every(1);
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bmt", FRAME.id(Identifier::FORMAT, 0x16)).length(1).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bmt", FRAME.id(Identifier::FORMAT, 0x16))
+        .length(1)
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Bmt {
@@ -3303,8 +3313,10 @@ impl Bsp {
     pub const RESERVED_SIGNAL: LongSignal<Bytes<1>> =
         LongSignal::new(0, Signal::new("reserved", Place::byte(0))).every(1);
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bsp", FRAME.id(Identifier::FORMAT, 0x17)).length(1).send_id(Identifier::PRIORITY, 0x7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bsp", FRAME.id(Identifier::FORMAT, 0x17))
+        .length(1)
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 }
 
 impl LongLayout for Bsp {
@@ -3534,8 +3546,7 @@ impl Bst {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bst", FRAME.id(Identifier::FORMAT, 0x19))
         .length(4)
-        .send_id(Identifier::PRIORITY, 0x4)
-        .fill_report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4).report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]));
 }
 
 impl Layout for Bst {
@@ -3692,11 +3703,10 @@ impl Cst {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("cst", FRAME.id(Identifier::FORMAT, 0x1A))
-        .length(4)
-        .send_id(Identifier::PRIORITY, 0x4)
-        .fill_request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]);
+    pub const CHARGER_CYCLE: Exchange =
+        CHARGER_CYCLE_ACCESS.of("cst", FRAME.id(Identifier::FORMAT, 0x1A)).length(4).sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
@@ -3986,8 +3996,7 @@ impl Bem {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bem", FRAME.id(Identifier::FORMAT, 0x1E))
         .length(4)
-        .send_id(Identifier::PRIORITY, 0x2)
-        .fill_report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x2).report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]));
 }
 
 impl Layout for Bem {
@@ -4080,11 +4089,10 @@ impl Cem {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("cem", FRAME.id(Identifier::FORMAT, 0x1F))
-        .length(4)
-        .send_id(Identifier::PRIORITY, 0x2)
-        .fill_request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]);
+    pub const CHARGER_CYCLE: Exchange =
+        CHARGER_CYCLE_ACCESS.of("cem", FRAME.id(Identifier::FORMAT, 0x1F)).length(4).sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
@@ -4874,11 +4882,11 @@ impl Ackm {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
-        .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
-        .fill_report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
@@ -4935,11 +4943,11 @@ impl TpRequestToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -4997,13 +5005,13 @@ impl TpClearToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -5053,13 +5061,13 @@ impl TpEndOfMessage {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -5113,13 +5121,13 @@ impl TpBroadcast {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -5166,13 +5174,13 @@ impl TpAbort {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .send_id(Identifier::PRIORITY, 0x7)
-        .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
+        .sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
@@ -5214,11 +5222,13 @@ impl TpData {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange =
-        TP_OF_MODULE_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
+    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
+        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
     /// The access `tp_of_controller`, for filters and blank frames of it.
-    pub const TP_OF_CONTROLLER: Exchange =
-        TP_OF_CONTROLLER_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
+    pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
+        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors

@@ -405,12 +405,12 @@ pub const TIMING: Timing = Timing::NONE
     .with_watchdog(Time::of(milliseconds(10_000)));
 
 /// Read from modules. Section 3.3, 3.5.
-pub const READ_ACCESS: Exchange =
-    Exchange::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access =
+    Access::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None]).request(FRAME).reply(FRAME);
 
 /// Read from the system or a group. Section 3.3, 3.5.
-pub const READ_TOTAL_ACCESS: Exchange =
-    Exchange::new("read_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
+pub const READ_TOTAL_ACCESS: Access =
+    Access::new("read_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
         .request(FRAME)
         .reply(FRAME);
 
@@ -422,8 +422,8 @@ pub const READ_TOTAL_ACCESS: Exchange =
 /// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command",
 /// because 3.3 has 0x13 answered by each module of a group and its broadcast unanswered; the lists
 /// contradict nothing.
-pub const SET_ACCESS: Exchange =
-    Exchange::new("set", &[Some(Who::One), Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+pub const SET_ACCESS: Access =
+    Access::new("set", &[Some(Who::One), Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .with_values()
         .request(FRAME)
         .reply(FRAME);
@@ -431,8 +431,8 @@ pub const SET_ACCESS: Exchange =
 /// Set for the system or a group. Section 3.3, 3.5.
 ///
 /// The reply carries the values now in effect.
-pub const SET_TOTAL_ACCESS: Exchange =
-    Exchange::new("set_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
+pub const SET_TOTAL_ACCESS: Access =
+    Access::new("set_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
         .with_values()
         .request(FRAME)
         .reply(FRAME);
@@ -443,8 +443,8 @@ pub const SET_TOTAL_ACCESS: Exchange =
 /// response beside two broadcasts and the request to 0x80", used is "no reply in any mode", because
 /// 0x80 is the address of one module, so the words are the best evidence that none answers peer-to-peer
 /// either; a reply of unknown layout could not be decoded.
-pub const SET_UNANSWERED_ACCESS: Exchange =
-    Exchange::new("set_unanswered", &[Some(Who::Nobody), None, Some(Who::Nobody), Some(Who::Nobody)])
+pub const SET_UNANSWERED_ACCESS: Access =
+    Access::new("set_unanswered", &[Some(Who::Nobody), None, Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
         .request(FRAME.selectors(&[SUB_COMMAND_SELECTOR]));
 

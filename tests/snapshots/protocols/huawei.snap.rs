@@ -357,36 +357,35 @@ pub const START_UP_MODE: Mode = Mode {
 pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_000)));
 
 /// Read several registers. Section 4, 5.
-pub const READ_ALL_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
+pub const READ_ALL_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
     .request(FRAME)
     .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]));
 
 /// Read several registers in the set `measured_data`. Section 4, 5.
 ///
 /// In a reply, `command` is `0x40`.
-pub const READ_ALL_MEASURED_DATA_ACCESS: Exchange =
-    Exchange::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
+pub const READ_ALL_MEASURED_DATA_ACCESS: Access =
+    Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
         .member_of("measured_data")
         .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x40));
 
 /// Read several registers in the set `information`. Section 4, 5.
 ///
 /// In a reply, `command` is `0x50`.
-pub const READ_ALL_INFORMATION_ACCESS: Exchange =
-    Exchange::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
+pub const READ_ALL_INFORMATION_ACCESS: Access =
+    Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
         .member_of("information")
         .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x50));
 
 /// Read the E-label. Section 6.
-pub const READ_TEXT_ACCESS: Exchange =
-    Exchange::new("read_text", &[Some(Who::One), None, None, None, None, None, None])
-        .request(FRAME.id(Identifier::COMMAND, 0xD2))
-        .reply(FRAME.id(Identifier::COMMAND, 0xD2));
+pub const READ_TEXT_ACCESS: Access = Access::new("read_text", &[Some(Who::One), None, None, None, None, None, None])
+    .request(FRAME.id(Identifier::COMMAND, 0xD2))
+    .reply(FRAME.id(Identifier::COMMAND, 0xD2));
 
 /// Set a register. Section 7.
 ///
 /// The reply repeats the request.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), None, None, None, None, None, None])
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), None, None, None, None, None, None])
     .with_values()
     .request(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80))
     .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80));
@@ -400,19 +399,18 @@ pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), None, No
 ///
 /// Erratum Z13: printed is "to PSU above 1081827E", used is "a frame from the PSU", because bit 7 is 0,
 /// which is from the PSU (2.1).
-pub const GET_ACCESS: Exchange = Exchange::new("get", &[Some(Who::One), None, None, None, None, None, None])
+pub const GET_ACCESS: Access = Access::new("get", &[Some(Who::One), None, None, None, None, None, None])
     .request(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82))
     .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82));
 
 /// What PSUs send all the time. Section 9.1.
 ///
 /// Perhaps for agreeing on addresses and for sharing the load.
-pub const ANNOUNCE_ACCESS: Exchange = Exchange::new("announce", &[None, None, None, None, None, None, None])
+pub const ANNOUNCE_ACCESS: Access = Access::new("announce", &[None, None, None, None, None, None, None])
     .report(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x11));
 
 /// What is sent at power-up. Section 9.3.
-pub const START_UP_ACCESS: Exchange =
-    Exchange::new("start_up", &[None, None, None, None, None, None, None]).report(FRAME);
+pub const START_UP_ACCESS: Access = Access::new("start_up", &[None, None, None, None, None, None, None]).report(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

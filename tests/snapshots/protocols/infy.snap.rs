@@ -360,19 +360,19 @@ pub const TIMING: Timing = Timing::NONE
     .with_messages(&[("set_group", Timing::NONE.with_settling(Time::of(milliseconds(4000))))]);
 
 /// Read from modules. Section 2.4.
-pub const READ_ACCESS: Exchange =
-    Exchange::new("read", &[Some(Who::One), Some(Who::Each), None, None]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access =
+    Access::new("read", &[Some(Who::One), Some(Who::Each), None, None]).request(FRAME).reply(FRAME);
 
 /// Read from the system or a group. Section 2.4.
-pub const READ_TOTAL_ACCESS: Exchange =
-    Exchange::new("read_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
+pub const READ_TOTAL_ACCESS: Access =
+    Access::new("read_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
         .request(FRAME)
         .reply(FRAME);
 
 /// Set in modules. Section 2.4.
 ///
 /// The reply carries the values now in effect.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody), None])
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody), None])
     .with_values()
     .request(FRAME)
     .reply(FRAME);
@@ -384,8 +384,8 @@ pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who
 /// Erratum D40: printed is "only 0x01, 0x02 and 0x08 are answered when broadcast", used is "0x1B is
 /// answered too", because 2.4 says that the coordinating module answers a broadcast 0x1B from address
 /// 0x3F, and shows the frame.
-pub const SET_TOTAL_ACCESS: Exchange =
-    Exchange::new("set_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
+pub const SET_TOTAL_ACCESS: Access =
+    Access::new("set_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
         .with_values()
         .request(FRAME)
         .reply(FRAME);

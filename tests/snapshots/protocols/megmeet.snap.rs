@@ -243,14 +243,14 @@ pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_0
 ]);
 
 /// Read from one module. Section 2.1, 4.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None])
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82));
 
 /// Set in modules. Section 2.1, 3.1, 3.2, 4.
 ///
 /// The control command; a module that is addressed alone replies with the value.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Nobody)])
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Nobody)])
     .with_values()
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80));
@@ -264,7 +264,7 @@ pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who
 /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
 /// what is kept in the EEPROM", because only 0x80 with 0x100 has an example; configuration and EEPROM
 /// go together, and nothing forbids 0x80; whether it stores too is not said.
-pub const STORE_ACCESS: Exchange = Exchange::new("store", &[Some(Who::One), Some(Who::Nobody)])
+pub const STORE_ACCESS: Access = Access::new("store", &[Some(Who::One), Some(Who::Nobody)])
     .with_values()
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81));
@@ -276,7 +276,7 @@ pub const STORE_ACCESS: Exchange = Exchange::new("store", &[Some(Who::One), Some
 /// stands for it in general; a reply of signal 0 would be an unknown message.
 ///
 /// In a request, `command` is `0x50`. In a reply, `command` is `0x50`.
-pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None])
     .member_of("inherent_information")
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50));
@@ -288,7 +288,7 @@ pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Exchange = Exchange::new("read_a
 /// stands for it in general; a reply of signal 0 would be an unknown message.
 ///
 /// In a reply, `command` is `0x40`.
-pub const READ_ALL_REAL_TIME_DATA_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+pub const READ_ALL_REAL_TIME_DATA_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None])
     .member_of("real_time_data")
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x40));
 
@@ -297,15 +297,15 @@ pub const READ_ALL_REAL_TIME_DATA_ACCESS: Exchange = Exchange::new("read_all", &
 /// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
-pub const READ_ALL_ACCESS: Exchange =
-    Exchange::new("read_all", &[Some(Who::One), None]).reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
+pub const READ_ALL_ACCESS: Access =
+    Access::new("read_all", &[Some(Who::One), None]).reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
 
 /// Read several signals from one module. Section 2.1, 3.3, 3.4.
 ///
 /// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
-pub const READ_ALL_ACCESS_2: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+pub const READ_ALL_ACCESS_2: Access = Access::new("read_all", &[Some(Who::One), None])
     .request(FRAME)
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
 

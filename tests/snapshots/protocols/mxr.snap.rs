@@ -396,7 +396,7 @@ pub const BROADCAST_MODE: Mode = Mode {
 /// Read from one module. Section 2.3.2.
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None, None])
     .request(
         FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
     )
@@ -407,7 +407,7 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, 
 /// Read from one module. Section 2.3.2.
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
-pub const READ_ACCESS_2: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None])
+pub const READ_ACCESS_2: Access = Access::new("read", &[Some(Who::One), None, None, None])
     .request(
         FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
     )
@@ -420,8 +420,8 @@ pub const READ_ACCESS_2: Exchange = Exchange::new("read", &[Some(Who::One), None
 /// The reply repeats the value of the request, also if the setting failed.
 ///
 /// In a request, `function` is `0x3`. In a reply, `function` is `0x42`.
-pub const SET_ACCESS: Exchange =
-    Exchange::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
+pub const SET_ACCESS: Access =
+    Access::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
         .request(
             FRAME
@@ -439,8 +439,8 @@ pub const SET_ACCESS: Exchange =
 /// The reply repeats the value of the request, also if the setting failed.
 ///
 /// In a request, `function` is `0x3`. In a reply, `function` is `0x41`.
-pub const SET_ACCESS_2: Exchange =
-    Exchange::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
+pub const SET_ACCESS_2: Access =
+    Access::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
         .request(
             FRAME

@@ -223,7 +223,7 @@ pub const TIMING: Timing =
     Timing::NONE.with_messages(&[("keep_alive", Timing::NONE.with_watchdog(Time::of(milliseconds(3000))))]);
 
 /// Read. Section 5.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None, None])
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None, None, None])
     .request(
         FRAME
             .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -240,7 +240,7 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, 
 /// Write. Section 5.
 ///
 /// The answer repeats the value.
-pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One), Some(Who::Nobody), None, None, None])
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One), Some(Who::Nobody), None, None, None])
     .with_values()
     .request(
         FRAME
@@ -256,7 +256,7 @@ pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One), Some
     );
 
 /// Refuse what was requested. Section 5.
-pub const REFUSE_ACCESS: Exchange = Exchange::new("refuse", &[Some(Who::One), None, None, None, None]).reply(
+pub const REFUSE_ACCESS: Access = Access::new("refuse", &[Some(Who::One), None, None, None, None]).reply(
     FRAME
         .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
         .id(Identifier::FUNCTION, 0x5)
@@ -264,17 +264,17 @@ pub const REFUSE_ACCESS: Exchange = Exchange::new("refuse", &[Some(Who::One), No
 );
 
 /// Tell all rectifiers. Section 2.
-pub const TELL_ACCESS: Exchange = Exchange::new("tell", &[None, None, Some(Who::Nobody), None, None])
+pub const TELL_ACCESS: Access = Access::new("tell", &[None, None, Some(Who::Nobody), None, None])
     .with_values()
     .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
 /// Report at a fixed interval. Section 2.
-pub const REPORT_A_ACCESS: Exchange =
-    Exchange::new("report_a", &[None, None, None, Some(Who::One), None]).report(FRAME.id(Identifier::FUNCTION, 0x1));
+pub const REPORT_A_ACCESS: Access =
+    Access::new("report_a", &[None, None, None, Some(Who::One), None]).report(FRAME.id(Identifier::FUNCTION, 0x1));
 
 /// Report on a change. Section 2.
-pub const REPORT_B_ACCESS: Exchange =
-    Exchange::new("report_b", &[None, None, None, None, Some(Who::One)]).report(FRAME.id(Identifier::FUNCTION, 0x2));
+pub const REPORT_B_ACCESS: Access =
+    Access::new("report_b", &[None, None, None, None, Some(Who::One)]).report(FRAME.id(Identifier::FUNCTION, 0x2));
 
 /// What a request wants, or what became of it. Section 5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

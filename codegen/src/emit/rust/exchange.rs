@@ -20,8 +20,8 @@ pub fn access(access: &Access) -> TokenStream {
     let from_controller = is_from_controller.then(|| quote!(.from_controller()));
     quote! {
         #comment
-        pub const #constant: Exchange =
-            Exchange::new(#name, &#answers) #has_values #(#member_of)* #(#frames)* #from_controller;
+        pub const #constant: Access =
+            Access::new(#name, &#answers) #has_values #(#member_of)* #(#frames)* #from_controller;
     }
 }
 
@@ -35,18 +35,22 @@ pub fn exchange(exchange: &Exchange) -> TokenStream {
     });
     let length = length.iter().map(|length| quote!(.length(#length)));
     let models = (!models.is_empty()).then(|| quote!(.models(&[#(Model::#models as u8),*])));
-    let sends = exchange.sends.iter().map(|(place, value)| quote!(.send_id(Identifier::#place, #value)));
-    let filled = exchange.filled.iter().map(|ones| quote!(.fill_request(#ones)));
-    let filled_reply = exchange.filled_reply.iter().map(|ones| quote!(.fill_reply(#ones)));
-    let filled_report = exchange.filled_report.iter().map(|ones| quote!(.fill_report(#ones)));
+    let sent = sent(exchange).map(|sent| quote!(.sending(&#sent)));
     let refusal = exchange.refusal.as_ref().map(|refusal| {
         let filter = filter(refusal);
         quote!(.refusal(&#filter))
     });
     quote! {
         #comment
-        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #(#sends)* #(#filled)* #(#filled_reply)* #(#filled_report)* #refusal;
+        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #sent #refusal;
     }
+}
+
+/// Emits what frames have that are built, although any is accepted there.
+fn sent(Exchange { sends, filled, .. }: &Exchange) -> Option<TokenStream> {
+    let ids = sends.iter().map(|(place, value)| quote!(.id(Identifier::#place, #value)));
+    let ones = filled.iter().map(|(kind, ones)| quote!(.#kind(#ones)));
+    (!(sends.is_empty() && filled.is_empty())).then(|| quote!(Sent::NOTHING #(#ids)* #(#ones)*))
 }
 
 /// Writes who answers in each mode.

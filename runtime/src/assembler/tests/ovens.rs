@@ -2,8 +2,8 @@
 
 use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload, Place,
-    Problem, Protocol, Received, Selector, Signal,
+    Access, AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload,
+    Place, Problem, Protocol, Received, Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -26,39 +26,46 @@ const SINGLE: Mode = Mode {
 
 const ANSWERS: &[Option<Who>] = &[Some(Who::One)];
 
+const SCAN: Access = Access::new("scan", ANSWERS).request(Filter::STANDARD).reply(Filter::STANDARD);
+const SCAN_ALL: Access = of_members("scan").member_of("all");
+const SCAN_PAIR: Access = of_members("scan").member_of("pair");
+const READ: Access = of_members("read");
+
+const fn of_members(name: &'static str) -> Access {
+    let shown = Filter::STANDARD.selectors(&[SIGNAL, RESULT]);
+    Access::new(name, ANSWERS).request(shown).reply(shown)
+}
+
 /// Returns how a member travels, alone or as part of a set.
-const fn exchange(name: &'static str, access: &'static str, command: u32, signal: u64) -> Exchange {
-    let filter = Filter::STANDARD.selectors(&[SIGNAL, RESULT]).id(COMMAND, command).data(SIGNAL.place, signal);
-    Exchange::new(access, ANSWERS).length(4).request(filter).reply(filter).of(name, Filter::STANDARD)
+const fn member(access: &'static Access, name: &'static str, command: u32, signal: u64) -> Exchange {
+    access.of(name, Filter::STANDARD.id(COMMAND, command).data(SIGNAL.place, signal)).length(4)
 }
 
 const fn whole(name: &'static str, command: u32) -> Exchange {
-    let filter = Filter::STANDARD.id(COMMAND, command);
-    Exchange::new("scan", ANSWERS).length(4).request(filter).reply(filter).of(name, Filter::STANDARD)
+    SCAN.of(name, Filter::STANDARD.id(COMMAND, command)).length(4)
 }
 
 static ALL: Exchange = whole("all", 5);
 static PAIR: Exchange = whole("pair", 6);
 
 static OF_ALL: [Exchange; 6] = [
-    exchange("a", "scan", 5, 1).member_of("all"),
-    exchange("b", "scan", 5, 2).member_of("all"),
-    exchange("c", "scan", 5, 3).member_of("all"),
-    exchange("d", "scan", 5, 4).member_of("all"),
-    exchange("e", "scan", 5, 5).member_of("all"),
-    exchange("f", "scan", 5, 6).member_of("all"),
+    member(&SCAN_ALL, "a", 5, 1),
+    member(&SCAN_ALL, "b", 5, 2),
+    member(&SCAN_ALL, "c", 5, 3),
+    member(&SCAN_ALL, "d", 5, 4),
+    member(&SCAN_ALL, "e", 5, 5),
+    member(&SCAN_ALL, "f", 5, 6),
 ];
 
-static OF_PAIR: [Exchange; 2] =
-    [exchange("a", "scan", 6, 1).member_of("pair"), exchange("b", "scan", 6, 2).member_of("pair")];
+static OF_PAIR: [Exchange; 2] = [member(&SCAN_PAIR, "a", 6, 1), member(&SCAN_PAIR, "b", 6, 2)];
 
 static ALONE: [Exchange; 6] = [
-    exchange("a", "read", 7, 1),
-    exchange("b", "read", 7, 2),
-    exchange("c", "read", 7, 3),
-    exchange("d", "read", 7, 4),
-    exchange("e", "read", 7, 5),
-    exchange("f", "read", 7, 6),
+    member(&READ, "a", 7, 1),
+    member(&READ, "b", 7, 2),
+    member(&READ, "c", 7, 3),
+    member(&READ, "d", 7, 4),
+    member(&READ, "e", 7, 5),
+    member(&READ, "f", 7, 6),
 ];
 
 /// A member by its place among the six, and what it says.

@@ -10,7 +10,7 @@ use super::{PACE, Polled, frame_sent};
 use crate::client::{Client, Full, Heard, Nodes, NotHeld, Pace, Step, Ticket, repeats};
 use crate::plumbing::Who;
 use crate::tests::heaters::{COMMAND, FRAME, FUNCTION, Heat, Message, To, frame};
-use crate::{Exchange, Frame, Request, Route};
+use crate::{Access, Exchange, Frame, Request, Route};
 
 type Asking = Client<Message, 6, 2>;
 
@@ -18,7 +18,7 @@ const REFRESH: u32 = 1000;
 const GROUP: To = To::Group(2);
 
 /// Sets a power, and one module answers for a group, under the number of the group.
-static SET_BY_ONE: Exchange = Exchange::new("set by one", &[Some(Who::One), Some(Who::Coordinator), None])
+static SET_BY_ONE: Exchange = Access::new("set by one", &[Some(Who::One), Some(Who::Coordinator), None])
     .with_values()
     .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
     .reply(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 2))

@@ -6,7 +6,8 @@ use super::*;
 use crate::long::{Elements, LongPayload, LongSignal};
 use crate::plumbing::{Address, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Payload, Problem, Received, Signal,
+    Access, AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Payload, Problem, Received,
+    Signal,
 };
 
 const NODE: Bits = Bits::new(3, 0);
@@ -24,7 +25,7 @@ const MODE: Mode = Mode {
     coordinator: None,
 };
 
-const READ: Exchange = Exchange::new("read", &[Some(Who::One)]).request(Filter::STANDARD).reply(Filter::STANDARD);
+const READ: Access = Access::new("read", &[Some(Who::One)]).request(Filter::STANDARD).reply(Filter::STANDARD);
 const STATE: Exchange = READ.of("state", Filter::STANDARD.id(COMMAND, 1));
 const CELLS: Exchange = READ.of("cells", Filter::STANDARD.id(COMMAND, 2));
 

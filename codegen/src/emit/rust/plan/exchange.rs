@@ -62,12 +62,9 @@ pub struct Exchange {
     pub models: Vec<Ident>,
     /// Fields of the identifier that it sends with a value of its own.
     pub sends: Vec<(Ident, TokenStream)>,
-    /// The bits of the data that its request has as 1 although nothing names them.
-    pub filled: Option<TokenStream>,
-    /// The same of its reply.
-    pub filled_reply: Option<TokenStream>,
-    /// The same of its report, if a module sends it.
-    pub filled_report: Option<TokenStream>,
+    /// The methods that set data bits of a kind of frame to 1 although nothing names them, and those bits. A report of
+    /// the controller is built like a request.
+    pub filled: Vec<(Ident, TokenStream)>,
     /// What a frame that refuses its request shows.
     pub refusal: Option<Filter>,
 }
@@ -235,8 +232,9 @@ fn sends(protocol: &Protocol, message: &Message) -> Vec<(Ident, TokenStream)> {
 }
 
 /// Writes the bits of the data that a frame has as 1 although nothing names them.
-fn filled(frame: &FrameLayout) -> Option<TokenStream> {
-    Some(frame.filled()).filter(|ones| *ones != 0).map(|ones| data(ones.to_be_bytes()))
+fn filled(frame: &FrameLayout) -> Option<(Ident, TokenStream)> {
+    let kind = if frame.is_to_module() { Kind::Request } else { frame.kind };
+    Some(frame.filled()).filter(|ones| *ones != 0).map(|ones| (ident(kind.name()), data(ones.to_be_bytes())))
 }
 
 impl Exchange {
@@ -251,10 +249,7 @@ impl Exchange {
         let exchange = &message[id];
         let known = &protocol[exchange.access];
         let set = membership(protocol, exchange.set);
-        let frames = || protocol.frames_of(message).filter(|frame| frame.exchange == id);
-        let request = frames().find(|frame| frame.is_to_module());
-        let reply = frames().find(|frame| frame.kind == Kind::Reply);
-        let report = frames().find(|frame| frame.kind == Kind::Report && !frame.is_to_module());
+        let frames = protocol.frames_of(message).filter(|frame| frame.exchange == id);
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {
             constant: constant.clone(),
@@ -266,9 +261,7 @@ impl Exchange {
             length: (message.shortest() != 8).then(|| decimal(message.shortest())),
             models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),
             sends: sends(protocol, message),
-            filled: request.and_then(filled),
-            filled_reply: reply.and_then(filled),
-            filled_report: report.and_then(filled),
+            filled: frames.filter_map(filled).collect(),
             refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
         }
     }

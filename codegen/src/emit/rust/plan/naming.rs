@@ -10,7 +10,8 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 100] = [
+const TAKEN: [&str; 102] = [
+    "Access",
     "Address",
     "AddressType",
     "Addressed",
@@ -92,6 +93,7 @@ const TAKEN: [&str; 100] = [
     "Selector",
     "Self",
     "Send",
+    "Sent",
     "SetPath",
     "Severity",
     "Shown",
