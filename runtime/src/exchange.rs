@@ -284,6 +284,13 @@ impl Exchange {
         }
     }
 
+    /// Returns the data bits that a kind of frame has as 1 although nothing names them.
+    #[inline(always)]
+    pub(crate) fn ones<P: Protocol>(&self, kind: Kind) -> Data {
+        let kind = if self.is_to_module::<P>(kind) { Kind::Request } else { kind };
+        self.sent.map_or([0; 8], |sent| sent.ones(kind))
+    }
+
     /// Returns who answers in a mode, if the message has it.
     pub(crate) fn who(&self, mode: usize) -> Option<Who> {
         self.answers.get(mode).copied().flatten()

@@ -36,6 +36,14 @@ impl Frame {
         self.data
     }
 
+    /// Returns eight bytes. Those beyond the frame's length are those of `beyond`.
+    #[inline(always)]
+    pub(crate) const fn bytes_before(&self, beyond: Data) -> Data {
+        let (_, first) = cut(beyond, self.length);
+        let beyond = u64::from_be_bytes(beyond) & !u64::from_be_bytes(first);
+        (u64::from_be_bytes(self.data) | beyond).to_be_bytes()
+    }
+
     /// Returns the same frame in the type of a driver, which may refuse it.
     pub fn to<F: embedded_can::Frame>(&self) -> Option<F> {
         F::new(embedded_can::Frame::id(self), embedded_can::Frame::data(self))

@@ -310,10 +310,12 @@ impl<P: Protocol> Received<P> {
         is_same_frame && self.identifier() == other.identifier()
     }
 
-    /// Returns the received data, over which the signals are written.
+    /// Returns the received data, over which the signals are written. Beyond their end, bits that nothing names are as
+    /// they are sent.
     #[inline(always)]
     fn payload(&self) -> Payload {
-        let payload = Payload::of(self.exchange, self.frame.bytes()).for_model(self.model());
+        let beyond = if P::LENGTH.is_some() { [0; 8] } else { self.exchange.ones::<P>(self.kind) };
+        let payload = Payload::of(self.exchange, self.frame.bytes_before(beyond)).for_model(self.model());
         let payload = payload.received_with(self.frame.byte_count());
         if self.is_to_module() { payload.keeping_limits() } else { payload }
     }

@@ -259,13 +259,30 @@ fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
     const PRIORITY: Bits = Bits::new(28, 26);
     const ALL: Access = Access::new("set", &[None; 3]).request(FRAME).reply(FRAME).report(FRAME);
     const SENT: Sent = Sent::NOTHING.id(PRIORITY, 4).request([0xFF; 8]).reply([0x0F; 8]).report([0xF0; 8]);
+    const URGENT: Sent = Sent::NOTHING.id(PRIORITY, 4);
     let every = ALL.of("boost", FRAME);
     let own = every.sending(&SENT);
+    let plain = |kind| every.sending(&URGENT).filter(kind).map(|filter| filter.frame(8).bytes());
+    assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(plain), [Some([0; 8]); 3]);
     let blank = |kind| own.filter(kind).expect("all kinds are there").frame(2);
-    assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).raw_id() >> 26), [4; 3]);
+    assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).raw_id()), [0x1100_0000; 3]);
     assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).bytes()[0]), [0xFF, 0x0F, 0xF0]);
     let masks = [own, every].map(|exchange| exchange.filter(Kind::Request).map(|filter| filter.id_mask()));
     assert_eq!(masks[0], masks[1]);
+}
+
+#[test]
+fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
+    const SENT: Sent = Sent::NOTHING.request([1; 8]).reply([2; 8]).report([4; 8]);
+    static EVERY: Exchange = Access::new("set", &[None; 3]).of("heat", FRAME).length(4).sending(&SENT);
+    let built = |kind| {
+        let short = Frame::new_raw(0x0107_F003, true, [0x80, 0, 0, 0, 0, 0, 0, 0], 1);
+        let received = Received::new(Message::Heat(Heat { power_w: 0.0 }), &EVERY, kind, short, None);
+        received.encode().map(|frame| frame.bytes())
+    };
+    assert_eq!(built(Kind::Reply), Ok([0x80, 2, 0, 0, 0, 0, 0, 0]));
+    assert_eq!(built(Kind::Report), Ok([0x80, 4, 0, 0, 0, 0, 0, 0]));
+    assert_eq!(EVERY.ones::<Message>(Kind::Request), [1; 8]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
     Air, Error, Failure, Frame, Hours, Identifier, Message, Model, Power, Problem, Replies, Request, SetBlades,
-    SetSpeed, Target, Text,
+    SetLamp, SetSpeed, Target, Text,
 };
 
 /// Raw -1501, raw 25 and raw 1.
@@ -116,6 +116,21 @@ fn a_frame_ends_before_what_is_not_there_and_its_spare_bits_are_ones() {
     assert_eq!(sent(set(hours(None, None, None))), frame(0x00D3_01E1, &[1, 0xFF, 0x41, 0x20]));
     let missing = set(hours(None, None, Some(0))).map(|_| ()).expect_err("there is a value behind it");
     assert_eq!(missing, Error::Missing { message: "hours", signal: "stops" });
+}
+
+#[test]
+fn the_spare_bits_of_a_reply_are_ones_too() {
+    let asked = hours(None, None, None).set(Target::Fan(1)).expect("it can be set");
+    let answer = decoded(asked.frame()).answer(1, Message::Hours(hours(Some(12.5), Some(7), Some(-3))));
+    assert_eq!(answer, Ok(frame(0x00D3_E101, &[1, 25, 0x41, 0x20, 0xF7, 0xFD])));
+}
+
+#[test]
+fn what_only_one_fan_is_told_is_refused_for_a_group() {
+    let lamp = SetLamp { lamp: Power::Off };
+    assert_eq!(sent(lamp.set(Target::Fan(1))), frame(0x0195_01E1, &[1, 1]));
+    let refused = lamp.set(Target::Group(1)).map(|_| ()).expect_err("a group has no such message");
+    assert_eq!(refused, Error::Mode { message: "set_lamp", access: "set", mode: Some("group") });
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn an_entry_says_what_its_row_of_the_table_says() {
 
 #[test]
 fn an_entry_builds_the_request_that_its_type_builds() {
-    let [voltage, _, period, clear] = meter::MESSAGES else { panic!("the table has four rows") };
+    let [voltage, _, period, clear, _] = meter::MESSAGES else { panic!("the table has five rows") };
     let listed = voltage.request("read", Target::Meter(7)).expect("it can be read").expect("the meter is in range");
     let typed = Voltage::read(Target::Meter(7)).expect("the meter is in range");
     assert_eq!((listed.frame(), listed.replies()), (typed.frame(), typed.replies()));
@@ -56,6 +56,16 @@ fn a_register_that_can_be_written_takes_what_is_in_range() {
     assert_eq!(reply.values, Ok(Period { value_s: 60 }));
     assert!(!request.is_reply(&frame(0x547, [0x81, 0x20, 0, 0, 0, 60])), "that answers a read");
     assert!(measure_every(7, 3601).is_err());
+}
+
+#[test]
+fn only_a_write_is_refused_and_the_refusal_names_its_register() {
+    let request = measure_every(7, 60).expect("it is in range");
+    let refusal = request.refusal().expect("a write can be refused");
+    let refused = [0x20, 0x30].map(|register| frame(0x547, [0xC2, register, 0, 0, 0, 3]));
+    assert_eq!(refused.each_ref().map(|frame| refusal.matches(frame)), [true, false]);
+    assert_eq!(refused.each_ref().map(|frame| request.is_reply(frame)), [true, false]);
+    assert!(readings(7).flatten().all(|read| read.refusal().is_none()));
 }
 
 fn frame(id: u32, [a, b, c, d, e, f]: [u8; 6]) -> Frame {
