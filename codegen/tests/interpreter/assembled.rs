@@ -1,16 +1,9 @@
-//! What becomes of the frames of long messages, with identifiers of 11 bits.
+//! What becomes of the frames of long messages.
 
-use canspec_codegen::interpret::{Assembled, Assembly, Form, Frame, decode};
+use canspec_codegen::interpret::{Assembled, Assembly, decode};
 use canspec_codegen::model::Protocol;
 
-/// Returns the frame of a text such as `7E8#0562`.
-pub fn frame(text: &str) -> Frame {
-    let (id, data) = text.split_once('#').expect("an identifier and data");
-    let hex = |text| u8::from_str_radix(text, 16).expect("two digits");
-    let data = (0..data.len() / 2).map(|byte| hex(&data[2 * byte..2 * byte + 2])).collect();
-    let id = u32::from_str_radix(id, 16).expect("three digits");
-    Frame { id, extended: false, data, form: Form::Data }
-}
+use super::frame;
 
 /// Puts frames together. Each remembers its place. It returns the messages, and the places of frames that belong to none.
 pub fn assembled(protocol: &Protocol, frames: &[&str]) -> (Vec<Assembled<usize>>, Vec<usize>) {

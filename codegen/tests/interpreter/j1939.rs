@@ -1,9 +1,9 @@
 //! Messages by the transport of J1939, and what becomes of them if packets are lost, late, repeated or wrong.
 
-use canspec_codegen::interpret::{Assembled, Assembly, Content, Form, Frame, decode, encode_long};
+use canspec_codegen::interpret::{Assembled, Assembly, Content, decode, encode_long};
 use canspec_codegen::model::{NoteRule, Protocol};
 
-use super::feature;
+use super::{feature, frame};
 
 /// A vehicle announces 14 bytes, and sends them in two packets: ACME, 400 V, 180 Ah, 515 cycles, 2022, April.
 const ANNOUNCED: &str = "1CEC56F4#100E0002FF000200";
@@ -21,13 +21,6 @@ const TO_ALL: [&str; 3] = ["1CECFFF4#200E0002FF000200", "1CEBFFF4#0141434D45A00F
 
 fn vehicle() -> Protocol {
     feature("transport")
-}
-
-fn frame(text: &str) -> Frame {
-    let (id, data) = text.split_once('#').expect("an identifier and data");
-    let hex = |text| u8::from_str_radix(text, 16).expect("two digits");
-    let data = (0..data.len() / 2).map(|byte| hex(&data[2 * byte..2 * byte + 2])).collect();
-    Frame { id: u32::from_str_radix(id, 16).expect("eight digits"), extended: true, data, form: Form::Data }
 }
 
 /// Puts frames together. Each remembers its place. It returns the messages, and the places of frames that belong to none.

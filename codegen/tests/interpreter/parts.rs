@@ -24,6 +24,15 @@ fn a_message_in_parts_ends_with_the_part_that_its_count_needs() {
 }
 
 #[test]
+fn what_fills_up_a_message_that_is_not_whole_has_no_note() {
+    // Four bytes are announced. A pack and cells of two bytes each never have so many.
+    let (ended, _) = assembled(&feature("fast_packets"), &["19FF0123#400401E40CE50C00"]);
+    let [pack] = ended.as_slice() else { panic!("one message") };
+    assert_eq!(pack.incomplete.as_deref(), Some("4 bytes are announced, but the message has 3, 5, ... 33"));
+    assert!(pack.decoded.notes.is_empty(), "{:?}", pack.decoded.notes);
+}
+
+#[test]
 fn a_part_whose_number_is_not_greater_ends_the_message_before() {
     let again = "051#010300E8030A0000";
     let lost = Some("the parts 2, 3 are missing");
