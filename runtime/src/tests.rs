@@ -275,13 +275,14 @@ fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
 fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
     const SENT: Sent = Sent::NOTHING.request([1; 8]).reply([2; 8]).report([4; 8]);
     static EVERY: Exchange = Access::new("set", &[None; 3]).of("heat", FRAME).length(4).sending(&SENT);
-    let built = |kind| {
+    let built = |exchange: &'static Exchange, kind| {
         let short = Frame::new_raw(0x0107_F003, true, [0x80, 0, 0, 0, 0, 0, 0, 0], 1);
-        let received = Received::new(Message::Heat(Heat { power_w: 0.0 }), &EVERY, kind, short, None);
+        let received = Received::new(Message::Heat(Heat { power_w: 0.0 }), exchange, kind, short, None);
         received.encode().map(|frame| frame.bytes())
     };
-    assert_eq!(built(Kind::Reply), Ok([0x80, 2, 0, 0, 0, 0, 0, 0]));
-    assert_eq!(built(Kind::Report), Ok([0x80, 4, 0, 0, 0, 0, 0, 0]));
+    assert_eq!(built(&EVERY, Kind::Reply), Ok([0x80, 2, 0, 0, 0, 0, 0, 0]));
+    assert_eq!(built(&EVERY, Kind::Report), Ok([0x80, 4, 0, 0, 0, 0, 0, 0]));
+    assert_eq!(built(&Heat::SET, Kind::Reply), Ok([0x80, 0, 0, 0, 0, 0, 0, 0]));
     assert_eq!(EVERY.ones::<Message>(Kind::Request), [1; 8]);
 }
 

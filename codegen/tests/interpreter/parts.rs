@@ -24,12 +24,19 @@ fn a_message_in_parts_ends_with_the_part_that_its_count_needs() {
 }
 
 #[test]
-fn what_fills_up_a_message_that_is_not_whole_has_no_note() {
-    // Four bytes are announced. A pack and cells of two bytes each never have so many.
-    let (ended, _) = assembled(&feature("fast_packets"), &["19FF0123#400401E40CE50C00"]);
-    let [pack] = ended.as_slice() else { panic!("one message") };
-    assert_eq!(pack.incomplete.as_deref(), Some("4 bytes are announced, but the message has 3, 5, ... 33"));
-    assert!(pack.decoded.notes.is_empty(), "{:?}", pack.decoded.notes);
+fn what_fills_up_a_message_is_noted_only_if_it_is_whole() {
+    // Five bytes are a pack and two cells. No such message has four.
+    let said = |frame| {
+        let (ended, _) = assembled(&feature("fast_packets"), &[frame]);
+        let [pack] = ended.as_slice() else { panic!("one message") };
+        assert_eq!(pack.decoded.reserved, [0; 8]);
+        let notes: Vec<_> = pack.decoded.notes.iter().map(|note| note.text.clone()).collect();
+        (pack.incomplete.clone(), notes)
+    };
+    let filled = "bytes behind the end of the message are not all 0xFF".to_owned();
+    assert_eq!(said("19FF0123#000501E40CE50C00"), (None, vec![filled]));
+    let announced = "4 bytes are announced, but the message has 3, 5, ... 33".to_owned();
+    assert_eq!(said("19FF0123#400401E40CE50C00"), (Some(announced), vec![]));
 }
 
 #[test]

@@ -421,6 +421,23 @@ fn a_frame_of_a_module_that_should_go_to_one_is_refused_with_what_names_the_send
     assert_eq!(report, Err("limits: such a frame does not go to `module`".to_owned()));
 }
 
+#[test]
+fn the_address_that_a_call_names_is_no_other_one_of_the_same_frame() {
+    let spec = WIDE
+        .replace("node: {bits: 3..0}", "host: {bits: 3..2}, gate: {bits: 1}, node: {bits: 0}")
+        .replace(
+            "{counter: {range: 1..9}}",
+            "{host: {range: 0..3, send: 1}, gate: {range: 0..1, send: 0}, counter: {range: 0..1}}",
+        )
+        .replace("node: counter}", "host: host, gate: gate, node: counter}");
+    let to = Target { name: "host".to_owned(), number: Some(3) };
+    let by =
+        Sent { kind: Some(Kind::Reply), access: None, model: None, message: "lock", to: Some(&to), source: Some(1) };
+    let frames = sent(&written(&spec), by, &[("value".to_owned(), "010203".to_owned())]);
+    // Direction 1, command 6, host 3, gate 0, node 1.
+    assert_eq!(frames.map(|frames| printed(&frames[0])).ok().as_deref(), Some("46D#0302010000000000"));
+}
+
 /// Returns the data of the last frame of a message in parts that a module sends.
 fn last_part(spec: &str, (message, kind): (&str, Kind), signals: &[(&str, &str)]) -> Option<String> {
     let protocol = feature(spec);
