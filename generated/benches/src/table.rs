@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use canspec_benches::infy;
 use canspec_benches::workload::{Kind, Measured, Workload};
 
 /// The profiles of cargo, with the names that people know.
@@ -35,7 +34,8 @@ fn instructions(number: usize) {
         let programs = programs(workload, |codec| [number, codec, work]);
         let cells = |kind: usize| {
             let ours = programs.iter().map(|program| vec![program.into(), kind.to_string().into()]);
-            let cantools = cantools.iter().map(|command| command.iter().cloned().chain([name.into()]).collect());
+            let cantools = cantools.get(kind).into_iter().flatten();
+            let cantools = cantools.map(|command| command.iter().cloned().chain([name.into()]).collect());
             ours.chain(cantools).map(|command: Vec<_>| counted(&command)).collect()
         };
         rows(name, workload.kinds, &(0..workload.kinds.len()).map(cells).collect::<Vec<_>>());
@@ -61,19 +61,13 @@ fn row(heading: &str, cells: &[Option<f64>]) {
     println!("| {heading} | {} |", cells.join(" | "));
 }
 
-/// Builds the C of cantools, which does INFY alone. Returns a command for each profile, or none.
-fn cantools(workload: &Workload) -> Vec<Vec<OsString>> {
-    if workload.name != infy::WORKLOAD.name {
-        return Vec::new();
-    }
-    let frames = (workload.kinds[0].frames)(Workload::COUNTED);
-    match cantools::programs(&target().join("cantools"), &frames) {
-        Ok(programs) => programs.into(),
-        Err(missing) => {
-            println!("SKIPPED: cantools' C, which needs {missing}\n");
-            Vec::new()
-        }
-    }
+/// Builds the C of cantools. Returns a command for each kind of frames and each profile, or none.
+fn cantools(workload: &Workload) -> Vec<[Vec<OsString>; 2]> {
+    let kinds: Vec<_> = workload.kinds.iter().map(|kind| (kind.frames)(Workload::COUNTED)).collect();
+    cantools::programs(&target().join("cantools"), workload.name, &kinds).unwrap_or_else(|missing| {
+        println!("SKIPPED: cantools' C, which needs {missing}\n");
+        Vec::new()
+    })
 }
 
 /// Compiles `count` for a work of each codec in each profile, and returns where they stand.
