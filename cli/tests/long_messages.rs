@@ -216,7 +216,7 @@ fn a_fast_packet_is_whole_where_its_length_says_and_never_joined_to_another_one(
     let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
     let wholes: Vec<Value> = objects.filter(|line: &Value| line.get("lines").is_some()).collect();
     let said: Vec<_> = wholes.iter().map(|whole| (&whole["lines"], &whole["incomplete"])).collect();
-    let never = "4 bytes are announced, but the message has 3, 5, ... 33";
+    let never = "4 bytes announced, but the message has 3, 5, ... 33";
     assert_eq!(
         said,
         [

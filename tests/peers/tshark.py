@@ -63,7 +63,8 @@ def signal_fields(name, signal):
     """Returns the fields of a signal, and its value as it stands in the list of packets."""
     if "set" in signal:
         bits = {f"{name}.{bit}": "1" for bit in signal["set"]}
-        return {name: str(signal["raw"]), **bits}, " ".join(signal["set"]) or "none"
+        unknown = [f"0x{signal['unknown']:X}"] if signal["unknown"] else []
+        return {name: str(signal["raw"]), **bits}, " ".join(signal["set"] + unknown) or "none"
     raw, value = signal["raw"], escaped(signal["value"])
     if value is None:
         return {f"{name}.raw": str(raw)}, "?"

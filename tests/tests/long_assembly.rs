@@ -195,7 +195,7 @@ impl Agreement {
                     match &message.incomplete {
                         Some(text) => {
                             let wrong = partial.announced().filter(|length| !long::<L>(protocol).has_length(*length));
-                            let said = wrong.map(|length| format!("{length} bytes are announced"));
+                            let said = wrong.map(|length| format!("{length} byte"));
                             assert_eq!(text.contains("announced"), wrong.is_some(), "{text}");
                             assert!(text.contains(&said.unwrap_or_default()), "{text}");
                             assert!(text.contains(&missing.join(", ")), "{text}");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::long::Joined;
+use super::long::{Joined, in_bytes};
 use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
@@ -311,7 +311,7 @@ impl<M: Clone> Transfer<M> {
     ) -> Assembled<M> {
         let missing = self.missing(long, model, expected);
         let wrong = self.announced.and_then(|length| Some((length, long.whole().other_lengths(length)?)));
-        let wrong = wrong.map(|(length, known)| format!("{length} bytes are announced, but the message has {known}"));
+        let wrong = wrong.map(|(length, known)| format!("{} announced, but the message has {known}", in_bytes(length)));
         let incomplete = match (missing, wrong) {
             (Some(missing), Some(wrong)) => Some(format!("{missing}; {wrong}")),
             (missing, wrong) => missing.or(wrong),

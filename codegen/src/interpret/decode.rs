@@ -1,6 +1,7 @@
 //! Decodes a frame to a message with its values.
 
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 
 use super::notes::signal_note;
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, hexadecimal, hexadecimal_ranges};
@@ -276,26 +277,24 @@ impl<'a> Decoder<'a, '_> {
     fn by_length(&self, group: &'a Group) -> Result<&'a Scope, Unrecognised> {
         let length = self.frame.data.len();
         group.of_length(length).ok_or_else(|| {
-            let wanted = self.nearest_length(group);
+            let wanted = self.fitting_lengths(group);
             let bytes = if length == 1 { "byte" } else { "bytes" };
             let text = format!("{length} data {bytes} instead of {wanted}");
             self.unrecognised(Problem::Length, text, true, Some(&group.all))
         })
     }
 
-    /// Returns the length of the frames whose constants and addresses fit best. Of several lengths
-    /// it is the nearest, of two equally near ones the greater.
-    fn nearest_length(&self, group: &Group) -> u8 {
+    /// Names the lengths of the frames whose constants and addresses fit best: `4 or 6`.
+    fn fitting_lengths(&self, group: &Group) -> String {
         let by_constants = group.choice.as_ref().and_then(|choice| choice.find(|place| self.read(place)));
         let all = || group.choice.iter().flat_map(Choice::ends).collect();
         let frames: Vec<_> = by_constants.map_or_else(all, |frames| vec![frames]);
-        let frames = frames.into_iter().flatten().map(|id| &self.protocol[*id]);
-        let found = u8::try_from(self.frame.data.len()).unwrap_or(u8::MAX);
-        let lengths = frames.flat_map(|frame| frame.lengths.iter().map(move |length| (frame, *length)));
-        let rank = |(frame, length): &(&FrameLayout, u8)| {
-            (self.addressing(frame).fit, length.abs_diff(found), Reverse(*length))
-        };
-        lengths.min_by_key(rank).map_or(8, |(_, length)| length)
+        let frames = || frames.iter().copied().flatten().map(|id| &self.protocol[*id]);
+        let fit = |frame: &FrameLayout| self.addressing(frame).fit;
+        let best = frames().map(fit).min();
+        let of_best = frames().filter(|frame| Some(fit(frame)) == best);
+        let lengths: BTreeSet<_> = of_best.flat_map(|frame| &frame.lengths).collect();
+        lengths.into_iter().map(u8::to_string).collect::<Vec<_>>().join(" or ")
     }
 
     /// Returns the kind of frame that fits best, and all that have the frame's constants.

@@ -36,6 +36,11 @@ pub struct Values {
     pub reserved: Vec<u8>,
 }
 
+/// Writes a number of bytes.
+pub fn in_bytes(count: usize) -> String {
+    if count == 1 { "1 byte".to_owned() } else { format!("{count} bytes") }
+}
+
 impl Joined {
     /// Reads the signals whose bytes all came.
     pub fn read(&self, protocol: &Protocol, extent: Extent, model: Option<ModelId>) -> Values {

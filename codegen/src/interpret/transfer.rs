@@ -6,7 +6,7 @@ mod j1939;
 use super::assembly::{Assembled, Taken};
 use super::decode::transported;
 use super::encode::frame;
-use super::long::Joined;
+use super::long::{Joined, in_bytes};
 use super::{Decoded, Frame, Note, Refusal};
 use crate::model::{
     FrameLayout, LongMessage, LongMessageId, ModelId, Protocol, Standard, Transport, TransportFrame, TransportId,
@@ -89,7 +89,7 @@ impl Started {
     /// Says that the message never has this number of bytes.
     fn wrong_length(&self, long: &LongMessage) -> Option<String> {
         let known = long.extent(&long.frames[self.layout]).other_lengths(self.size)?;
-        Some(format!("{} bytes came, but the message has {known}", self.size))
+        Some(format!("{} came, but the message has {known}", in_bytes(self.size)))
     }
 }
 

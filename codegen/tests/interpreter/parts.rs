@@ -35,8 +35,9 @@ fn what_fills_up_a_message_is_noted_only_if_it_is_whole() {
     };
     let filled = "bytes behind the end of the message are not all 0xFF".to_owned();
     assert_eq!(said("19FF0123#000501E40CE50C00"), (None, vec![filled]));
-    let announced = "4 bytes are announced, but the message has 3, 5, ... 33".to_owned();
-    assert_eq!(said("19FF0123#400401E40CE50C00"), (Some(announced), vec![]));
+    let announced = |length| Some(format!("{length} announced, but the message has 3, 5, ... 33"));
+    assert_eq!(said("19FF0123#400401E40CE50C00"), (announced("4 bytes"), vec![]));
+    assert_eq!(said("19FF0123#4001010000000000"), (announced("1 byte"), vec![]));
 }
 
 #[test]

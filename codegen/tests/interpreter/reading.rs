@@ -367,3 +367,29 @@ fn an_identifier_of_the_right_width_shows_its_fields() {
     let other = unrecognised(&undirected, "000000A1#00");
     assert_eq!(other, ("the identifier has 29 bits instead of 11".to_owned(), vec![]));
 }
+
+#[test]
+fn a_wrong_length_is_told_with_those_that_fit_the_addresses() {
+    let why = |spec: &Protocol, text| decode(spec, None, &frame(text)).err().map(|why| why.text);
+    let charger = feature("optional_fields");
+    assert_eq!(why(&charger, "521#8A0C020103").as_deref(), Some("5 data bytes instead of 3 or 4 or 7"));
+    assert_eq!(why(&charger, "521#8A").as_deref(), Some("1 data byte instead of 3 or 4 or 7"));
+    let units = written(
+        r#"
+canspec: 1
+protocol: units
+title: Units
+document: {title: Made up, version: "1"}
+length: 8
+identifier: {command: {bits: 10..4}, node: {bits: 3..0}}
+types: {unit: {range: 1..9}}
+addressing: {all: {request: {node: 0}}, single: {request: {node: unit}}}
+access: {tell: {request: {}, answers: {all: nobody}}, order: {request: {}, answers: {single: nobody}}}
+messages:
+  stop:  {section: "1", match: {command: 1}, length: 2, access: [tell], value: {bytes: 0}}
+  start: {section: "1", match: {command: 1}, length: 4, access: [order], value: {bytes: 0}}
+"#,
+    );
+    assert_eq!(why(&units, "010#000000").as_deref(), Some("3 data bytes instead of 2"));
+    assert_eq!(why(&units, "011#000000").as_deref(), Some("3 data bytes instead of 4"));
+}

@@ -183,6 +183,15 @@ end
 local NO_DIRECTION = "the addresses do not show whether it goes to "
   .. (protocol.sides or "a module or to the controller")
 
+-- Names the numbers of data bytes of the frames with an identifier.
+local function lengths_of(group)
+  local known = {}
+  for length = 0, 8 do
+    if group.lengths[length] then table.insert(known, length) end
+  end
+  return table.concat(known, " or ")
+end
+
 -- Returns the layouts with the identifier, the length and the data bytes of a frame, or a problem.
 local function candidates(frame)
   local identifier = protocol.identifier
@@ -205,7 +214,8 @@ local function candidates(frame)
 
   local of_length = group.lengths[frame.length]
   if not of_length then
-    local text = frame.length .. " data bytes instead of " .. group.longest
+    local bytes = frame.length == 1 and " data byte instead of " or " data bytes instead of "
+    local text = frame.length .. bytes .. lengths_of(group)
     return nil, problem("length", text, frame, group.selectors)
   end
 

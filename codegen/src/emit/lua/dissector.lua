@@ -151,7 +151,7 @@ local function add_selectors(tree, tvb, decoded)
   end
 end
 
--- Adds the bits of a status word, and returns the names of those that are set.
+-- Adds the bits of a status word. It returns the names of those that are set, and the others as a number.
 local function add_bits(item, range, reading)
   local set = {}
   for _, bit in ipairs(reading.signal.bits) do
@@ -159,6 +159,7 @@ local function add_bits(item, range, reading)
     item:add(bit.field, range, is_set)
     if is_set then table.insert(set, bit.name) end
   end
+  if reading.value.unknown then table.insert(set, reading.value.unknown) end
   return #set > 0 and table.concat(set, " ") or "none"
 end
 

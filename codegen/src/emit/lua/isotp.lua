@@ -74,7 +74,7 @@ local function lacking(open, why)
   local came = math.floor(#open.data / 2)
   if came == open.size then
     local known = other_lengths(open.layout.long, open.size, open.layout)
-    return known and string.format("%d bytes came, but the message has %s", open.size, known)
+    return known and string.format("%s came, but the message has %s", in_bytes(open.size), known)
   end
   return string.format("%d of %d bytes came", came, open.size) .. (why and "; " .. why or "")
 end

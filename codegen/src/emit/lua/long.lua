@@ -45,6 +45,11 @@ local function all_lengths(long, layout)
   return lengths
 end
 
+-- Writes a number of bytes.
+local function in_bytes(count)
+  return count .. (count == 1 and " byte" or " bytes")
+end
+
 -- Says how many bytes a long message has, or returns nil if it can have `length`.
 local function other_lengths(long, length, layout)
   local lengths = all_lengths(long, layout)

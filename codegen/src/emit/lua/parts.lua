@@ -78,7 +78,7 @@ local function cut(open, whole, lacking)
   whole.count, whole.is_counted, whole.is_ended = elements_in(open.long, open.announced), true, true
   local known = other_lengths(open.long, open.announced)
   if not known then return lacking end
-  local wrong = string.format("%d bytes are announced, but the message has %s", open.announced, known)
+  local wrong = string.format("%s announced, but the message has %s", in_bytes(open.announced), known)
   return lacking and lacking .. "; " .. wrong or wrong
 end
 

@@ -12,7 +12,6 @@ pub fn course(course: &Course) -> Value {
 fn group(group: &Group) -> Value {
     let lengths = group.lengths.iter().map(|(length, scope)| (Value::number(*length), selectors(&scope.selectors)));
     Value::record()
-        .maybe("longest", group.lengths.last().map(|(length, _)| Value::number(*length)))
         .with("selectors", selectors(&group.all.selectors))
         .with("lengths", Value::map(lengths))
         .maybe("choice", group.choice.as_ref().map(|by_payload| choice(by_payload, &frames)))

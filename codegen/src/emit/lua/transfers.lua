@@ -83,7 +83,7 @@ local function end_transfer(open, why, ended)
   if not what and open.count > 0 then
     local known = other_lengths(open.long, open.size)
     if known then
-      what = string.format("%d bytes came, but the message has %s", open.size, known)
+      what = string.format("%s came, but the message has %s", in_bytes(open.size), known)
     else
       why = nil
     end

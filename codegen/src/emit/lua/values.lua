@@ -237,8 +237,10 @@ function values.status(signal, raw)
       set[bit.bit] = is_set or nil
     end
   end
-  if double(unknown) == 0 or #signal.bits == 0 then return set end
-  return set, "unknown_bit", signal.name .. " has bits 0x" .. digits(unknown, 1) .. " set that have no name"
+  if double(unknown) == 0 then return set end
+  set.unknown = "0x" .. digits(unknown, 1)
+  if #signal.bits == 0 then return set end
+  return set, "unknown_bit", signal.name .. " has bits " .. set.unknown .. " set that have no name"
 end
 
 local function range_note(signal, model, value)
