@@ -5,9 +5,9 @@ use std::collections::HashSet;
 use indexmap::IndexMap;
 
 use super::ambiguous::{Ranges, accepted};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::hex;
-use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Mode, Protocol, Way};
+use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Message, Mode, Protocol, Way};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -24,18 +24,22 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let place = ways.iter().position(|way| by_way.contains_key(way)).unwrap_or(0);
         by_way.entry(ways.swap_remove(place)).or_default().push(alike);
     }
-    let together = by_way.into_iter().filter_map(|(way, alike)| Some(together(protocol, &alike)?.help(way)));
-    together.for_each(|diagnostic| diagnostics.push(diagnostic));
+    let report = |(way, alike): (String, Vec<Alike>)| Some(together(protocol, diagnostics, &alike)?.help(way));
+    let reports: Vec<_> = by_way.into_iter().filter_map(report).collect();
+    for diagnostic in reports {
+        diagnostics.push(diagnostic);
+    }
 }
 
 /// Reports the first pair, with the patterns of the others beside it.
-fn together(protocol: &Protocol, alike: &[Alike]) -> Option<Diagnostic> {
+fn together(protocol: &Protocol, diagnostics: &Diagnostics, alike: &[Alike]) -> Option<Diagnostic> {
     let (first, others) = alike.split_first()?;
     let mut named = HashSet::from([first.pair.request.path(), first.pair.reply.path()]);
     let pairs = others.iter().map(|known| known.pair);
     let patterns = pairs.flat_map(|pair| [(pair.request, "another request"), (pair.reply, "another reply")]);
     let others = patterns.filter(|(known, _)| named.insert(known.path()));
-    Some(others.fold(first.report(protocol), |known, (other, what)| known.other(other.path().at_key(), what)))
+    let report = first.report(protocol, diagnostics);
+    Some(others.fold(report, |known, (other, what)| known.other(other.path().at_key(), what)))
 }
 
 /// What always tells the direction.
@@ -103,7 +107,7 @@ struct Alike<'a> {
 }
 
 impl Alike<'_> {
-    fn report(&self, protocol: &Protocol) -> Diagnostic {
+    fn report(&self, protocol: &Protocol, diagnostics: &Diagnostics) -> Diagnostic {
         let Pair { request, reply } = &self.pair;
         let name = |known: &Known| format!("`{}` of `{}`", known.key, known.mode.name);
         let text = format!(
@@ -114,14 +118,27 @@ impl Alike<'_> {
             name(reply)
         );
         let diagnostic = Diagnostic::error(&DIRECTION, reply.path().at_key(), text);
-        diagnostic.other(request.path().at_key(), "the request")
+        let diagnostic = diagnostic.other(request.path().at_key(), "the request");
+        let chosen = self.chosen(protocol, diagnostics).into_iter();
+        chosen.fold(diagnostic, |known, (at, what)| known.other(at, what))
+    }
+
+    /// Returns where two messages are chosen.
+    fn chosen(&self, protocol: &Protocol, diagnostics: &Diagnostics) -> Vec<(At, String)> {
+        let messages = self.frames.map(|frame| &protocol[frame.message]);
+        let of = |message: &Message| {
+            (diagnostics.written(&message.doc.path, &["match"]), format!("chooses `{}`", message.name))
+        };
+        if messages[0].name == messages[1].name { Vec::new() } else { messages.map(of).into() }
     }
 
     fn messages(&self, protocol: &Protocol) -> String {
         let [request, reply] = self.frames;
         let [one, other] = self.frames.map(|frame| &protocol[frame.message].name);
         let [asks, kind] = [request, reply].map(|frame| frame.kind.name());
-        if one == other {
+        if one == other && asks == kind {
+            format!("both {kind}s of `{one}`")
+        } else if one == other {
             format!("the {asks} of `{one}` and its {kind}")
         } else {
             format!("the {asks} of `{one}` and the {kind} of `{other}`")
