@@ -32,7 +32,11 @@ impl Room for Status<'_> {
     }
 
     fn parse(&self, _: &str, _: bool) -> Result<u64, Misfit> {
-        Err(format!("`{}` is a status word; write the names of its set bits as a list", self.signal.name).into())
+        Err(format!(
+            "`{}` is a status word; write the names of its set bits as a list, which is `[]` if none is set",
+            self.signal.name
+        )
+        .into())
     }
 
     /// Reads `[fan_fault]`.

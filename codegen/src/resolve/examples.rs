@@ -349,7 +349,9 @@ impl Resolver<'_> {
             }
             Means::Signals(_) => {
                 let text = format!("`{}` is one value, not a map", signal.name);
-                self.error_with_help(&rules::EXAMPLE, path.at_key(), text, "write its value alone");
+                let is_status = signal.encoding.status_word().is_some();
+                let help = if is_status { "write a list of its set bits" } else { "write its value alone" };
+                self.error_with_help(&rules::EXAMPLE, path.at_key(), text, help);
                 return None;
             }
         };

@@ -221,7 +221,10 @@ impl Resolver<'_> {
         if field.format.is_some() {
             self.check_keys(merged, Role::of_packed(outer.site));
             self.check_in_no_array(path, "a packed value", outer.row)?;
-            self.check_not_long(path, "a packed value", outer.is_long)?;
+            if outer.is_long {
+                self.refuse_in_long(path, ("a packed value", "make fields of its parts"));
+                return None;
+            }
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }

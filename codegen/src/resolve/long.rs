@@ -110,20 +110,16 @@ impl Resolver<'_> {
     }
 
     /// Refuses a field that a long message cannot have.
-    pub fn check_not_long(&mut self, path: &Path, what: &str, is_long: bool) -> Option<()> {
-        if !is_long {
-            return Some(());
-        }
-        let text = format!("{what} cannot stand in a message of `parts`");
-        let help = "make fields of its parts; what chooses the frames stands in `match`";
+    pub fn refuse_in_long(&mut self, path: &Path, (what, help): (&str, &str)) {
+        let text = format!("{what} cannot stand in this message of several frames");
         self.error_with_help(&rules::PARTS, path.at_key(), text, help);
-        None
     }
 
     /// Refuses constants, since no frame of the message would show them.
     fn refuse_constants(&mut self, leaves: &Leaves) {
         for (constant, _) in &leaves.constants {
-            self.check_not_long(&constant.doc.path, "a constant", true);
+            let what = ("a constant", "take it out; what chooses the frames stands in `match`");
+            self.refuse_in_long(&constant.doc.path, what);
         }
     }
 
