@@ -174,7 +174,8 @@ impl Draft {
             Some((signal.name.clone(), means(protocol, signal, reading)?))
         });
         map.put("means", Map::of(said.collect::<Option<Vec<_>>>()?));
-        if let Some(count) = count {
+        let is_announced = long.parts().is_some_and(|parts| parts.length.is_some());
+        if let Some(count) = count.filter(|_| !is_announced) {
             map.put("count", count.to_string());
         }
         if let Some(model) = model {
