@@ -12,7 +12,16 @@ pub struct Frame {
     id: u32,
     extended: bool,
     length: u8,
+    /// Fills the struct up. Otherwise a copy keeps what was in memory there, by instructions of its own.
+    filling: Filling,
     data: Data,
+}
+
+/// Two bytes without a meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u16)]
+enum Filling {
+    Zeros,
 }
 
 impl Frame {
@@ -21,7 +30,7 @@ impl Frame {
     pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
         let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
         let (length, data) = cut(data, length);
-        Self { id, extended, length, data }
+        Self { id, extended, length, filling: Filling::Zeros, data }
     }
 
     /// Returns the identifier as a number.
@@ -59,7 +68,7 @@ impl Frame {
     #[inline]
     pub(crate) const fn with(&self, data: Data, length: u8) -> Self {
         let (length, data) = cut(data, length);
-        Self { id: self.id, extended: self.extended, length, data }
+        Self { id: self.id, extended: self.extended, length, filling: Filling::Zeros, data }
     }
 
     /// Returns other data of the same length.
@@ -79,7 +88,7 @@ impl Frame {
         let is_right = length.is_none_or(|length| usize::from(length) == bytes.len());
         let actual =
             u8::try_from(bytes.len()).ok().filter(|actual| is_right && *actual <= 8 && frame.is_data_frame())?;
-        Some(Self { id, extended, length: length.unwrap_or(actual), data: padded(bytes) })
+        Some(Self { id, extended, length: length.unwrap_or(actual), filling: Filling::Zeros, data: padded(bytes) })
     }
 
     #[inline]
@@ -175,7 +184,7 @@ pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
 pub fn without_data(frame: &impl embedded_can::Frame) -> Option<Frame> {
     let (id, extended) = raw_id(frame.id());
     let length = u8::try_from(frame.data().len()).ok().filter(|length| *length <= 8 && frame.is_data_frame())?;
-    Some(Frame { id, extended, length, data: [0; 8] })
+    Some(Frame { id, extended, length, filling: Filling::Zeros, data: Data::default() })
 }
 
 /// Returns the first eight of `bytes`, filled up with zeros.
