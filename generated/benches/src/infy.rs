@@ -72,7 +72,7 @@ const fn payload<C: Infy>() -> Work {
 /// Decodes the reply to a request out of the frames of several modules.
 const fn reply<C: Infy>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(replies::<C>(frames), |(asked, frame)| {
+        work::with_each!(replies::<C>(frames), |(asked, frame)| {
             if let Some(Ok((voltage, current))) = C::reply(asked, frame) {
                 take!(voltage, current);
             }

@@ -22,11 +22,6 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares work on each input. A pass does it once with each.
-    pub fn each<T: 'static>(inputs: Vec<T>, work: impl Fn(&T) + 'static) -> Self {
-        Self::new(inputs.len(), move || each(&inputs, |input| work(input)))
-    }
-
     /// Prepares a pass that does a work `count` times.
     pub fn new(count: usize, pass: impl Fn() + 'static) -> Self {
         Self { count, pass: Box::new(pass) }
@@ -43,6 +38,21 @@ impl Prepared {
     }
 }
 
+/// Prepares a work on each input. A pass does it once with each. The compiler would leave a large closure as a function
+/// of its own, so this is a macro.
+macro_rules! with_each {
+    ($inputs:expr, |$input:pat_param| $work:expr) => {{
+        let inputs = $inputs;
+        $crate::work::Prepared::new(inputs.len(), move || {
+            for input in &inputs {
+                let $input = ::std::hint::black_box(input);
+                $work;
+            }
+        })
+    }};
+}
+pub(crate) use with_each;
+
 /// Runs `work` on inputs that the compiler cannot foresee.
 #[inline(always)]
 pub fn each<T>(inputs: &[T], work: impl Fn(&T)) {
@@ -54,7 +64,7 @@ pub fn each<T>(inputs: &[T], work: impl Fn(&T)) {
 /// Decodes frames in the loop that takes the values, the only place that decodes.
 pub const fn decode<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(frames.to_vec(), |frame| {
+        with_each!(frames.to_vec(), |frame| {
             C::decode(frame).as_ref().map(C::take).ok();
         })
     };
@@ -64,7 +74,7 @@ pub const fn decode<C: Codec>() -> Work {
 /// Decodes frames by a function that is not inlined, as in a program that decodes in several places.
 pub const fn decode_by_call<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(frames.to_vec(), |frame| {
+        with_each!(frames.to_vec(), |frame| {
             decoded::<C>(frame).as_ref().map(C::take).ok();
         })
     };
@@ -74,7 +84,7 @@ pub const fn decode_by_call<C: Codec>() -> Work {
 /// Builds requests.
 pub const fn request<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(requests::<C>(frames), |request| {
+        with_each!(requests::<C>(frames), |request| {
             black_box(&C::request(request));
         })
     };
@@ -84,7 +94,7 @@ pub const fn request<C: Codec>() -> Work {
 /// Builds requests by a function that is not inlined.
 pub const fn request_by_call<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(requests::<C>(frames), |request| {
+        with_each!(requests::<C>(frames), |request| {
             black_box(&requested::<C>(request));
         })
     };
@@ -94,7 +104,7 @@ pub const fn request_by_call<C: Codec>() -> Work {
 /// Encodes what was received.
 pub const fn encode<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(values::<C>(frames), |values| {
+        with_each!(values::<C>(frames), |values| {
             black_box(&C::encode(values));
         })
     };
@@ -104,7 +114,7 @@ pub const fn encode<C: Codec>() -> Work {
 /// Encodes what was received by a function that is not inlined.
 pub const fn encode_by_call<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        Prepared::each(values::<C>(frames), |values| {
+        with_each!(values::<C>(frames), |values| {
             black_box(&encoded::<C>(values));
         })
     };
