@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use canspec_codegen::emit::{Options, Scaled, Switch};
+use canspec_codegen::emit::{Goal, Options, Scaled, Switch};
 use canspec_codegen::{Bases, Generated};
 
 fn main() {
@@ -73,7 +73,7 @@ fn generate(path: &Path, options: &Options) -> Generated {
 }
 
 fn every_option(scaled: Scaled) -> Options {
-    Options { scaled, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
+    Options { scaled, goal: Goal::Speed, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
 }
 
 /// Shows a protocol to a visitor.

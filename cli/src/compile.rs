@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use canspec_codegen::emit::{Options, Scaled, Switch};
+use canspec_codegen::emit::{Goal, Options, Scaled, Switch};
 use canspec_codegen::files::{self, File, State};
 use canspec_codegen::{Builder, Generated, generate};
 use clap::{Args, ValueEnum};
@@ -34,6 +34,9 @@ pub struct Compile {
     /// What scaled values are: a type of float, or whole steps as raw integers.
     #[arg(long, value_enum, default_value_t = Values::F64)]
     scaled: Values,
+    /// What programs are optimized for.
+    #[arg(long, value_enum, default_value_t = Purpose::Speed)]
+    goal: Purpose,
     /// Implement the traits of serde: `always`, `never`, or if the crate has this feature.
     #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
     serde: Switch,
@@ -55,6 +58,24 @@ enum Values {
     F64,
     F32,
     Steps,
+}
+
+/// What programs are optimized for.
+#[derive(Clone, Copy, ValueEnum)]
+enum Purpose {
+    /// Each place that builds a request has all code for it.
+    Speed,
+    /// The compiler decides where that code stands.
+    Size,
+}
+
+impl From<Purpose> for Goal {
+    fn from(purpose: Purpose) -> Self {
+        match purpose {
+            Purpose::Speed => Self::Speed,
+            Purpose::Size => Self::Size,
+        }
+    }
 }
 
 impl From<Values> for Scaled {
@@ -93,6 +114,7 @@ impl Compile {
     fn options(&self) -> Options {
         Options {
             scaled: self.scaled.into(),
+            goal: self.goal.into(),
             serde: self.serde.clone(),
             defmt: self.defmt.clone(),
             arbitrary: self.arbitrary.clone(),
@@ -147,7 +169,7 @@ fn is_feature(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use canspec_codegen::emit::{Options, Scaled, Switch};
+    use canspec_codegen::emit::{Goal, Options, Scaled, Switch};
     use clap::Parser;
 
     #[derive(Parser)]
@@ -162,10 +184,15 @@ mod tests {
 
     #[test]
     fn each_choice_reaches_its_option() {
-        let call = "compile a.yaml --scaled f32 --serde always --defmt log --arbitrary fuzz-1";
+        let call = "compile a.yaml --scaled f32 --goal size --serde always --defmt log --arbitrary fuzz-1";
         let gated = |feature: &str| Switch::Gated(feature.to_owned());
-        let expected =
-            Options { scaled: Scaled::F32, serde: Switch::Always, defmt: gated("log"), arbitrary: gated("fuzz-1") };
+        let expected = Options {
+            scaled: Scaled::F32,
+            goal: Goal::Size,
+            serde: Switch::Always,
+            defmt: gated("log"),
+            arbitrary: gated("fuzz-1"),
+        };
         assert_eq!(options(call), Some(expected));
         assert_eq!(options("compile a.yaml --serde never --scaled f64"), Some(Options::default()));
         let steps = Options { scaled: Scaled::Steps, ..Options::default() };

@@ -12,7 +12,7 @@ use std::{env, io};
 
 use crate::bases::Bases;
 use crate::diagnostic::Diagnostics;
-use crate::emit::{Options, Scaled, Switch};
+use crate::emit::{Goal, Options, Scaled, Switch};
 use crate::files;
 pub use generated::{Generated, generate};
 use inputs::Inputs;
@@ -37,7 +37,7 @@ use inputs::Inputs;
 /// ```
 ///
 /// A wrong spec stops the build: cargo shows each diagnostic as an error, and nothing is written.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Builder {
     folders: Vec<PathBuf>,
     specs: Vec<PathBuf>,
@@ -47,9 +47,11 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Returns a builder without specs.
+    /// Returns a builder without specs. Its [goal](Self::goal) is that of the profile that cargo builds.
     pub fn new() -> Self {
-        Self::default()
+        let options = Options { goal: goal_of(env::var("OPT_LEVEL").ok().as_deref()), ..Options::default() };
+        let (folders, specs) = (Vec::new(), Vec::new());
+        Self { folders, specs, out_dir: None, bases: Bases::default(), options }
     }
 
     /// Adds one spec, by its path from the crate's root. A file that is added twice counts once.
@@ -99,6 +101,14 @@ impl Builder {
     #[must_use]
     pub fn scaled(mut self, scaled: Scaled) -> Self {
         self.options.scaled = scaled;
+        self
+    }
+
+    /// Sets what programs are optimized for. A build script has size if the `opt-level` of the profile is `s` or `z`,
+    /// and else speed.
+    #[must_use]
+    pub fn goal(mut self, goal: Goal) -> Self {
+        self.options.goal = goal;
         self
     }
 
@@ -165,6 +175,17 @@ impl Builder {
         let folder = folder.ok_or_else(|| io::Error::other("OUT_DIR is not set: this is for build scripts"))?;
         write(&folder, generated)
     }
+}
+
+impl Default for Builder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Returns what a profile with such an `opt-level` optimizes for.
+fn goal_of(level: Option<&str>) -> Goal {
+    if let Some("s" | "z") = level { Goal::Size } else { Goal::Speed }
 }
 
 /// Replaces the protocols of a folder.

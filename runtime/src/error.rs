@@ -1,6 +1,11 @@
 //! Why a frame is not built.
 
+mod value;
+
 use core::fmt;
+
+pub(crate) use value::{Fault, Refusable, Value};
+pub use value::{Reason, ValueError};
 
 use crate::Number;
 
@@ -9,57 +14,8 @@ use crate::Number;
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// The value lies outside the documented range, or does not fit the signal's bits. Both the
-    /// given and the rounded value count.
-    Limits {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal.
-        signal: &'static str,
-        /// The refused value.
-        value: Number,
-        /// Unit of value and limits.
-        unit: Option<&'static str>,
-        /// The smallest legal value.
-        minimum: Number,
-        /// The largest legal value.
-        maximum: Number,
-    },
-    /// The value would be rounded to a raw value that means something else.
-    Special {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal.
-        signal: &'static str,
-        /// The refused value.
-        value: Number,
-        /// Unit of the value.
-        unit: Option<&'static str>,
-        /// Name of what would be sent.
-        name: &'static str,
-    },
-    /// The value is infinite or not a number.
-    NotFinite {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal.
-        signal: &'static str,
-    },
-    /// The signal has no value of this kind or name.
-    Meaning {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal.
-        signal: &'static str,
-    },
-    /// An optional signal has no value, but the frame is long enough for it: a value behind it is
-    /// given.
-    Missing {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal.
-        signal: &'static str,
-    },
+    /// A value is refused.
+    Value(ValueError),
     /// An array of a long message has too few elements or too many, or not as many as the others
     /// that vary with it.
     Elements {
@@ -73,14 +29,6 @@ pub enum Error {
         minimum: usize,
         /// The greatest number of elements.
         maximum: usize,
-    },
-    /// A frame to a module would carry another part of a long message than before. Only the whole message makes
-    /// such frames, since its limits hold for all parts together.
-    Part {
-        /// Name of the message.
-        message: &'static str,
-        /// Name of the signal: the number of the part, or its data.
-        signal: &'static str,
     },
     /// The buffer has too few bytes for a long message.
     Room {
@@ -197,35 +145,27 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// Says that a number was asked for, where limits or the width of the bits refuse its raw value.
+    pub(crate) fn of_asked(self, number: Number) -> Self {
+        if let Self::Value(error) = self { Self::Value(error.asked(number)) } else { self }
+    }
+
+    /// Returns why a value is refused, if this is what is wrong.
+    #[must_use]
+    pub fn reason(&self) -> Option<Reason> {
+        if let Self::Value(error) = self { Some(error.reason()) } else { None }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Limits { message, signal, value, unit, minimum, maximum } => {
-                let (space, unit) = unit.map_or(("", ""), |unit| (" ", unit));
-                write!(
-                    formatter,
-                    "`{signal}` of `{message}` is {value}{space}{unit}, but its limits are {minimum} and {maximum}{space}{unit}"
-                )
-            }
-            Self::Special { message, signal, value, unit, name } => {
-                let (space, unit) = unit.map_or(("", ""), |unit| (" ", unit));
-                write!(formatter, "`{signal}` of `{message}` is {value}{space}{unit}, which would be sent as `{name}`")
-            }
-            Self::NotFinite { message, signal } => write!(formatter, "`{signal}` of `{message}` is no finite number"),
-            Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),
-            Self::Missing { message, signal } => {
-                write!(formatter, "`{signal}` of `{message}` is left out, but what stands behind it is not")
-            }
+            Self::Value(error) => error.fmt(formatter),
             Self::Elements { message, signal, count, minimum, maximum } => {
                 write!(
                     formatter,
                     "`{signal}` of `{message}` has {count} elements, but its limits are {minimum} and {maximum}"
-                )
-            }
-            Self::Part { message, signal } => {
-                write!(
-                    formatter,
-                    "`{signal}` of `{message}` is that of another part, which only the whole message makes"
                 )
             }
             Self::Room { message, length, room } => {

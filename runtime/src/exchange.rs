@@ -307,7 +307,7 @@ impl Exchange {
         Addressing::find(P::MODES, self.answers, self.is_to_module::<P>(kind), id)
     }
 
-    #[cold]
+    #[inline(always)]
     pub(crate) fn no_mode(&self, mode: Option<&Mode>) -> Error {
         Error::Mode { message: self.message, access: self.access(), mode: mode.map(|mode| mode.name) }
     }

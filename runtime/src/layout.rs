@@ -1,7 +1,6 @@
 //! Layouts: the structs that messages decode to.
 
-use crate::payload::Refusing;
-use crate::{AnySignal, Data, Frame, Payload};
+use crate::{AnySignal, Data, Error, Frame, Payload};
 
 /// The values that a kind of frame carries.
 pub trait Layout: Sized + 'static {
@@ -36,7 +35,7 @@ pub trait Layout: Sized + 'static {
     ///
     /// Refuses values that the signals cannot hold. If `payload` keeps to limits, it also refuses
     /// values outside them.
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E>;
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error>;
 }
 
 /// The type of [`Layout::SIGNALS`].
@@ -51,7 +50,7 @@ impl Layout for () {
     const DECODE: Decode<Self> = |_| ();
 
     #[inline(always)]
-    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
         Ok(())
     }
 }

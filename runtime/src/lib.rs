@@ -81,7 +81,7 @@ pub use bytes::Bytes;
 pub use document::Document;
 pub use embedded_can;
 pub use entry::Entry;
-pub use error::Error;
+pub use error::{Error, Reason, ValueError};
 pub use exchange::{Access, Exchange};
 pub use filter::{Filter, Selector};
 pub use frame::Frame;

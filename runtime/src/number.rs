@@ -2,6 +2,11 @@
 
 use core::fmt;
 
+/// The sign of a double.
+const SIGN: u64 = 1 << 63;
+/// The bits of a double that is infinite.
+const INFINITE: u64 = f64::INFINITY.to_bits();
+
 /// A number as a signal carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
@@ -34,6 +39,25 @@ impl Number {
             Self::Single(number) => number as f64,
             Self::Float(number) => number,
             Self::Fraction { numerator, denominator } => numerator as f64 / denominator as f64,
+        }
+    }
+
+    /// Tests whether this is neither infinite nor an error of a calculation. It looks at the bits: many processors have no
+    /// instruction that compares doubles.
+    pub(crate) const fn is_finite(self) -> bool {
+        match self {
+            Self::Single(number) => number.is_finite(),
+            Self::Float(number) => number.to_bits() & INFINITE != INFINITE,
+            Self::Unsigned(_) | Self::Signed(_) | Self::Fraction { .. } => true,
+        }
+    }
+
+    /// Tests whether this is the error of a calculation.
+    pub(crate) const fn is_nan(self) -> bool {
+        match self {
+            Self::Single(number) => number.is_nan(),
+            Self::Float(number) => number.to_bits() & !SIGN > INFINITE,
+            Self::Unsigned(_) | Self::Signed(_) | Self::Fraction { .. } => false,
         }
     }
 

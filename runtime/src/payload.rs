@@ -1,19 +1,16 @@
 //! Data bytes while they are written.
 
-use core::marker::PhantomData;
+use crate::{Data, Exchange};
 
-use crate::{Data, Error, Exchange};
-
-/// The data bytes of a message while they are written. A refused value gives an `E`.
+/// The data bytes of a message while they are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Payload<E = Error> {
+pub struct Payload {
     owner: Owner,
     data: Data,
     keeps_limits: bool,
     model: Option<u8>,
     length: Option<u8>,
     received: u8,
-    refusal: PhantomData<E>,
 }
 
 impl Payload {
@@ -31,7 +28,7 @@ impl Payload {
 
     #[inline(always)]
     const fn owned(owner: Owner, data: Data) -> Self {
-        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0, refusal: PhantomData }
+        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0 }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
@@ -40,16 +37,6 @@ impl Payload {
         Self::new(message, data).keeping_limits()
     }
 
-    /// Returns the same bytes. A refused value then gives no reason.
-    #[must_use]
-    #[inline(always)]
-    pub(crate) const fn without_reasons(self) -> Payload<Refused> {
-        let Self { owner, data, keeps_limits, model, length, received, .. } = self;
-        Payload { owner, data, keeps_limits, model, length, received, refusal: PhantomData }
-    }
-}
-
-impl<E> Payload<E> {
     /// Returns the same bytes of a message that only takes values within their documented limits.
     #[must_use]
     #[inline(always)]
@@ -115,41 +102,6 @@ impl<E> Payload<E> {
     #[inline(always)]
     pub(crate) const fn replace(&mut self, data: Data) {
         self.data = data;
-    }
-}
-
-impl<E: Refusing> Payload<E> {
-    /// Says why a value of the message is refused.
-    #[inline(always)]
-    pub(crate) fn refusal(&self, why: impl FnOnce(&'static str) -> Error) -> E {
-        let message = self.message();
-        E::of(move || why(message))
-    }
-}
-
-/// What is said of a refused value: why, or nothing.
-///
-/// Code that asks for no reason is small and calls nothing. Only refused values are tested again, for the reason.
-pub trait Refusing: Sized {
-    /// Returns what is said of a value that is refused for a reason.
-    fn of(error: impl FnOnce() -> Error) -> Self;
-}
-
-impl Refusing for Error {
-    #[inline(always)]
-    fn of(error: impl FnOnce() -> Error) -> Self {
-        error()
-    }
-}
-
-/// That a value is refused, whatever the reason.
-#[derive(Clone, Copy, Debug)]
-pub struct Refused;
-
-impl Refusing for Refused {
-    #[inline(always)]
-    fn of(_: impl FnOnce() -> Error) -> Self {
-        Self
     }
 }
 

@@ -1,5 +1,6 @@
 //! The types of physical values.
 
+use crate::error::Value;
 use crate::plumbing::Scale;
 use crate::raw::{Integer, Raw};
 use crate::{Error, Meaning, Number, Payload, Signal};
@@ -9,7 +10,7 @@ use crate::{Error, Meaning, Number, Payload, Signal};
 /// It is `R` itself if possible, so integers are compared as integers. If there is a scale, they
 /// count its steps. A physical value with a scale, or a limit with a fraction, needs a
 /// floating-point type.
-pub trait Physical<R: Raw>: Copy + 'static {
+pub trait Physical<R: Raw>: Copy + Sync + 'static {
     /// Whether this is the raw value, whatever the scale.
     const IS_RAW: bool;
 
@@ -18,6 +19,10 @@ pub trait Physical<R: Raw>: Copy + 'static {
 
     /// Returns the physical value.
     fn number(self, scale: Option<Scale>) -> Number;
+
+    /// Returns what an error keeps of a refused value.
+    #[doc(hidden)]
+    fn told(self) -> Value;
 
     /// Tests whether this is a finite number.
     fn is_finite(self) -> bool;
@@ -30,7 +35,7 @@ pub trait Physical<R: Raw>: Copy + 'static {
     /// # Errors
     ///
     /// The same as [`Signal::put`].
-    fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error>;
+    fn write(signal: &'static Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error>;
 }
 
 impl<R: Raw + 'static> Physical<R> for R {
@@ -50,6 +55,11 @@ impl<R: Raw + 'static> Physical<R> for R {
         }
     }
 
+    #[inline(always)]
+    fn told(self) -> Value {
+        Value::Raw(self.to_bits())
+    }
+
     #[inline]
     fn is_finite(self) -> bool {
         Raw::is_finite(self)
@@ -60,7 +70,7 @@ impl<R: Raw + 'static> Physical<R> for R {
         Raw::is_within(self, minimum, maximum)
     }
 
-    fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
+    fn write(signal: &'static Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
         signal.write_raw(number, payload)
     }
 }
@@ -240,6 +250,11 @@ macro_rules! scaled {
                 Scaled::number(self)
             }
 
+            #[inline(always)]
+            fn told(self) -> Value {
+                Value::Number(Scaled::number(self))
+            }
+
             #[inline]
             fn is_finite(self) -> bool {
                 self.is_finite()
@@ -251,7 +266,7 @@ macro_rules! scaled {
                 is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>())
             }
 
-            fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
+            fn write(signal: &'static Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
                 write(signal, number, payload)
             }
         }
@@ -266,7 +281,7 @@ scaled! {
 
 /// Writes a number by the scale, or as its own raw value.
 fn write<R: Raw, F: Physical<R> + Scaled>(
-    signal: &Signal<R, F>,
+    signal: &'static Signal<R, F>,
     number: Number,
     payload: &mut Payload,
 ) -> Result<(), Error> {

@@ -16,7 +16,6 @@ pub use crate::layout::{AnySignals, Decode, Signals, Task};
 pub use crate::long::parts::Said;
 pub use crate::long::{ByteRun, LongPayload};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
-pub use crate::payload::Refusing;
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
 pub use crate::protocol::Headed;
@@ -33,8 +32,7 @@ pub use crate::word::{Legend, Word};
 pub mod prelude {
     pub use super::{
         Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern,
-        Piece, Refusing, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
-        right_aligned,
+        Piece, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

@@ -6,7 +6,7 @@ use crate::text::Escaped;
 use crate::{Number, PackedText, StatusBit, bytes, status};
 
 /// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text, raw bytes or a packed value.
-pub trait Raw: Copy + 'static {
+pub trait Raw: Copy + Sync + 'static {
     /// Whether the bits are a number in two's complement.
     const SIGNED: bool = false;
 

@@ -5,7 +5,6 @@ use core::mem::discriminant;
 use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
 use crate::layout::{Signals, Task};
-use crate::payload::Refusing;
 use crate::plumbing::Way;
 use crate::protocol::{is_own, own_id};
 use crate::reply::{error_code, has_error, selected};
@@ -252,7 +251,7 @@ impl<P: Protocol> Received<P> {
     /// - addresses that the document does not name.
     #[inline]
     pub fn encode(&self) -> Result<Frame, Error> {
-        let plain = if self.is_plain() { self.written(Payload::without_reasons).ok() } else { None };
+        let plain = if self.is_plain() { self.content.run(Writing(self)).ok() } else { None };
         let (data, length) = match plain {
             Some(written) => written,
             None => self.checked()?,
@@ -277,18 +276,12 @@ impl<P: Protocol> Received<P> {
     #[cold]
     #[inline(never)]
     fn checked(&self) -> Result<(Data, Option<u8>), Error> {
-        let (data, length) = self.written(|payload| payload)?;
+        let (data, length) = self.content.run(Writing(self))?;
         let frame = self.frame.with(data, P::LENGTH.or(length).unwrap_or(self.exchange.data_length()));
         if self.is_other {
             self.check_recognised(frame)?;
         }
         self.check_request().map(|()| (data, length))
-    }
-
-    /// Writes the values over the received data.
-    #[inline(always)]
-    fn written<E: Refusing>(&self, of: impl Fn(Payload) -> Payload<E>) -> Result<(Data, Option<u8>), E> {
-        self.content.run(Writing { received: self, of })
     }
 
     /// Refuses a frame that would not be recognised as what it was made from.
@@ -364,18 +357,14 @@ impl<P: Addressed> Received<P> {
 /// can have several.
 ///
 /// Each message has a payload of its own, so none has to be in memory.
-struct Writing<'a, P: Protocol, F> {
-    received: &'a Received<P>,
-    of: F,
-}
+struct Writing<'a, P: Protocol>(&'a Received<P>);
 
-impl<P: Protocol, E: Refusing, F: Fn(Payload) -> Payload<E>> Task for Writing<'_, P, F> {
-    type Output = Result<(Data, Option<u8>), E>;
+impl<P: Protocol> Task for Writing<'_, P> {
+    type Output = Result<(Data, Option<u8>), Error>;
 
     #[inline(always)]
     fn run<L: Layout>(self, values: &L) -> Self::Output {
-        let Self { received, of } = self;
-        let mut payload = of(received.payload());
+        let mut payload = self.0.payload();
         values.encode(&mut payload)?;
         Ok((*payload.data(), payload.length()))
     }

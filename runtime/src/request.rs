@@ -27,6 +27,21 @@ impl Exchange {
         self.built(route.into(), None, message)
     }
 
+    /// The same as [`request_to`](Self::request_to), for programs that are optimized for speed.
+    ///
+    /// # Errors
+    ///
+    /// The same.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub fn inlined_request_to<T: Destination, R>(
+        &'static self,
+        route: impl Into<Route<T>>,
+        message: &impl Layout,
+    ) -> Result<Request<T::Protocol, R>, Error> {
+        self.inlined_built(route.into(), None, message)
+    }
+
     /// Builds the request that carries `message` to a device model. Generated code calls it.
     ///
     /// # Errors
@@ -43,8 +58,34 @@ impl Exchange {
         self.built(route.into(), Some(model.into()), message)
     }
 
+    /// The same as [`request_within`](Self::request_within), for programs that are optimized for speed.
+    ///
+    /// # Errors
+    ///
+    /// The same.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub fn inlined_request_within<T: Destination, R>(
+        &'static self,
+        model: impl Into<u8>,
+        route: impl Into<Route<T>>,
+        message: &impl Layout,
+    ) -> Result<Request<T::Protocol, R>, Error> {
+        self.inlined_built(route.into(), Some(model.into()), message)
+    }
+
     #[inline]
     fn built<T: Destination, R>(
+        &'static self,
+        route: Route<T>,
+        model: Option<u8>,
+        message: &impl Layout,
+    ) -> Result<Request<T::Protocol, R>, Error> {
+        self.inlined_built(route, model, message)
+    }
+
+    #[inline(always)]
+    fn inlined_built<T: Destination, R>(
         &'static self,
         Route { target, sender }: Route<T>,
         model: Option<u8>,

@@ -3,13 +3,14 @@
 mod any;
 mod optional;
 mod quantity;
+mod refused;
 mod scaled;
 #[cfg(test)]
 mod tests;
 
 use core::marker::PhantomData;
 
-use crate::payload::Refusing;
+use crate::error::{Fault, Value};
 use crate::physical::Physical;
 use crate::plumbing::Scale;
 use crate::raw::Raw;
@@ -195,9 +196,9 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
     /// refuses values outside them.
     #[inline(always)]
-    pub fn put<E: Refusing>(&self, raw: R, payload: &mut Payload<E>) -> Result<(), E> {
+    pub fn put(&'static self, raw: R, payload: &mut Payload) -> Result<(), Error> {
         if !raw.is_whole() {
-            return Err(payload.refusal(move |message| self.meaningless(message)));
+            return Err(self.refused(Fault::Meaning, payload));
         }
         if payload.keeps_limits() && self.check_model(raw.to_bits(), payload)? && self.special(raw.to_bits()).is_none()
         {
@@ -206,7 +207,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if self.store(raw.to_bits(), payload) {
             Ok(())
         } else {
-            Err(payload.refusal(move |message| self.too_wide(self.physical(raw), message)))
+            Err(self.refused(Fault::Width(Value::Raw(raw.to_bits())), payload))
         }
     }
 
@@ -222,9 +223,9 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// The same as [`put`](Self::put). If `payload` keeps to limits, it also refuses any other value than the one that
     /// is there. The limits of a long message hold for all of its parts together.
     #[doc(hidden)]
-    pub fn keep<E: Refusing>(&self, raw: R, payload: &mut Payload<E>) -> Result<(), E> {
+    pub fn keep(&'static self, raw: R, payload: &mut Payload) -> Result<(), Error> {
         if payload.keeps_limits() && self.bits(*payload.data()) != raw.to_bits() {
-            return Err(payload.refusal(move |message| Error::Part { message, signal: self.name }));
+            return Err(self.refused(Fault::Part, payload));
         }
         self.put(raw, payload)
     }
@@ -236,29 +237,39 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         data
     }
 
+    /// Tests whether bits can be read back from the place unchanged.
+    #[inline(always)]
+    const fn holds(&self, bits: u64) -> bool {
+        let unused = 64_u32.wrapping_sub(self.place.width() as u32);
+        if R::SIGNED {
+            (bits.wrapping_shl(unused) as i64).wrapping_shr(unused) as u64 == bits
+        } else {
+            bits <= self.place.max()
+        }
+    }
+
     /// Writes bits if they can be read back unchanged. Returns whether they can.
     #[inline(always)]
-    fn store<E: Refusing>(&self, bits: u64, payload: &mut Payload<E>) -> bool {
-        let data = self.with(*payload.data(), bits);
-        let is_kept = self.bits(data) == bits;
+    fn store(&self, bits: u64, payload: &mut Payload) -> bool {
+        let is_kept = self.holds(bits);
         if is_kept {
-            payload.replace(data);
+            payload.replace(self.with(*payload.data(), bits));
         }
         is_kept
     }
 
     /// Tests bits against what the device model has. It returns whether limits apply to them.
     #[inline(always)]
-    fn check_model<E: Refusing>(&self, bits: u64, payload: &Payload<E>) -> Result<bool, E> {
+    fn check_model(&'static self, bits: u64, payload: &Payload) -> Result<bool, Error> {
         if !self.lacking.is_empty() && shows_lack(self.lacking, payload.model(), bits) {
-            return Err(payload.refusal(move |message| self.meaningless(message)));
+            return Err(self.refused(Fault::Meaning, payload));
         }
         Ok(!self.lacks_bits(payload))
     }
 
     /// Tests whether the device model does not have bits of the signal.
     #[inline(always)]
-    fn lacks_bits<E: Refusing>(&self, payload: &Payload<E>) -> bool {
+    fn lacks_bits(&self, payload: &Payload) -> bool {
         !self.lacking.is_empty() && has_lacking_bits(self.lacking, payload.model())
     }
 
@@ -270,29 +281,25 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests the value that limits apply to.
     #[inline(always)]
-    fn check<E: Refusing>(&self, value: F, payload: &Payload<E>) -> Result<(), E> {
-        let (model, message) = (payload.model(), payload.message());
-        if F::IS_RAW { self.check_limits(value, model, message) } else { self.check_physical(value, model, message) }
+    fn check(&'static self, value: F, payload: &Payload) -> Result<(), Error> {
+        let model = payload.model();
+        let is_legal = if F::IS_RAW { self.is_legal(value, model) } else { self.is_legal_physical(value, model) };
+        if is_legal { Ok(()) } else { Err(self.refused(Fault::Limits(value.told()), payload)) }
     }
 
-    /// Tests a physical value against the limits. Small programs have the code once for all signals of a type, because
-    /// comparing doubles is large where the processor does not do it. It takes the parts of the payload, or there would
-    /// have to be one in memory.
+    /// Tests a physical value. Small programs have the code once for all signals of a type, because comparing doubles is
+    /// large where the processor does not do it.
     #[inline]
-    fn check_physical<E: Refusing>(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), E> {
-        self.check_limits(value, model, message)
+    fn is_legal_physical(&self, value: F, model: Option<u8>) -> bool {
+        self.is_legal(value, model)
     }
 
     /// Tests a value against the limits. None lies between them that is not finite.
     #[inline(always)]
-    fn check_limits<E: Refusing>(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), E> {
+    fn is_legal(&self, value: F, model: Option<u8>) -> bool {
         match self.limits_in(model) {
-            Some((minimum, maximum)) if value.is_within(minimum, maximum) => Ok(()),
-            None if value.is_finite() => Ok(()),
-            Some((minimum, maximum)) if value.is_finite() => {
-                Err(E::of(move || self.outside(value, minimum, maximum, message)))
-            }
-            _ => Err(E::of(move || self.not_finite(message))),
+            Some((minimum, maximum)) => value.is_within(minimum, maximum),
+            None => value.is_finite(),
         }
     }
 
@@ -302,22 +309,6 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             Some(model) if !self.model_limits.is_empty() => self.limits_for(model),
             _ => self.limits,
         }
-    }
-
-    #[cold]
-    fn meaningless(&self, message: &'static str) -> Error {
-        Error::Meaning { message, signal: self.name }
-    }
-
-    #[cold]
-    fn not_finite(&self, message: &'static str) -> Error {
-        Error::NotFinite { message, signal: self.name }
-    }
-
-    #[cold]
-    fn outside(&self, value: F, minimum: F, maximum: F, message: &'static str) -> Error {
-        let (minimum, maximum) = self.numbers((minimum, maximum));
-        self.beyond([value.number(self.scale), minimum, maximum], message)
     }
 
     /// Returns limits as physical values, the lower one first.
@@ -331,44 +322,25 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if self.scale.is_some_and(Scale::is_falling) { (other, one) } else { (one, other) }
     }
 
-    /// Says that a value lies outside what a minimum and a maximum allow.
-    #[cold]
-    fn beyond(&self, [value, minimum, maximum]: [Number; 3], message: &'static str) -> Error {
-        Error::Limits { message, signal: self.name, value, unit: self.unit, minimum, maximum }
-    }
-
-    #[cold]
-    fn hidden(&self, value: Number, name: &'static str, message: &'static str) -> Error {
-        Error::Special { message, signal: self.name, value, unit: self.unit, name }
-    }
-
     pub(crate) const fn is_scaled(&self) -> bool {
         self.scale.is_some()
     }
 
     /// Tests the value that the caller gave against the limits, if `payload` keeps to them.
-    pub(crate) fn check_asked(&self, asked: F, payload: &Payload) -> Result<(), Error> {
+    pub(crate) fn check_asked(&'static self, asked: F, payload: &Payload) -> Result<(), Error> {
         if payload.keeps_limits() && !self.lacks_bits(payload) { self.check(asked, payload) } else { Ok(()) }
     }
 
-    /// Says that a value does not fit, with the limits of what the bits hold.
-    #[cold]
-    fn too_wide(&self, value: F, message: &'static str) -> Error {
-        self.unfit(value.number(self.scale), message)
-    }
-
-    /// Says that a number does not fit, with the limits of what the bits hold.
-    #[cold]
-    fn unfit(&self, number: Number, message: &'static str) -> Error {
-        let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number(self.scale));
-        let (minimum, maximum) = self.rising((one, other));
-        self.beyond([number, minimum, maximum], message)
+    /// Returns which special raw value bits are.
+    #[inline(always)]
+    fn special(&self, bits: u64) -> Option<u32> {
+        if self.specials.is_empty() { None } else { named(self.specials, bits) }
     }
 
     /// Returns the name of a special raw value.
-    #[inline(always)]
-    fn special(&self, bits: u64) -> Option<&'static str> {
-        if self.specials.is_empty() { None } else { named(self.specials, bits) }
+    fn name_of(&self, index: u32) -> &'static str {
+        let special = usize::try_from(index).ok().and_then(|index| self.specials.get(index));
+        special.map_or("", |(_, name)| *name)
     }
 
     #[inline(always)]
@@ -412,8 +384,9 @@ fn has_lacking_bits(lacking: &[(u8, Lack)], model: Option<u8>) -> bool {
     lacking.iter().any(|(known, lack)| Some(*known) == model && matches!(lack, Lack::Bits(..)))
 }
 
-/// Returns the name of a raw value. All types of signals share the code.
+/// Returns which named value bits are. All types of signals share the code.
 #[inline]
-fn named(specials: &[(i64, &'static str)], bits: u64) -> Option<&'static str> {
-    specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
+fn named(specials: &[(i64, &'static str)], bits: u64) -> Option<u32> {
+    let index = specials.iter().position(|(raw, _)| *raw as u64 == bits)?;
+    u32::try_from(index).ok()
 }

@@ -9,7 +9,7 @@ use crate::{Meaning, PackedText, StatusBit, status};
 /// An integer with a legend: named values, a status word or a packed value.
 ///
 /// The generated types offer all this as methods of their own.
-pub trait Word: Copy + PartialEq + 'static {
+pub trait Word: Copy + Sync + PartialEq + 'static {
     /// The integer in the frame.
     type Raw: Integer;
     /// What the integer stands for.

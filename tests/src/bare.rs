@@ -12,7 +12,7 @@ use std::process::Command;
 use std::sync::LazyLock;
 use std::{env, fs, io, thread};
 
-use canspec_codegen::emit::{self, Options, Scaled};
+use canspec_codegen::emit::{self, Goal, Options, Scaled};
 use canspec_codegen::model::Protocol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -42,14 +42,15 @@ impl Codec {
     /// # Panics
     ///
     /// If a spec is wrong.
-    pub fn all(folder: &str, scaled: Scaled) -> Vec<Self> {
-        crate::specs(folder).iter().map(|path| Self::new(path, scaled)).collect()
+    pub fn all(folder: &str, scaled: Scaled, goal: Goal) -> Vec<Self> {
+        let options = Options { scaled, goal, ..Options::default() };
+        crate::specs(folder).iter().map(|path| Self::new(path, &options)).collect()
     }
 
-    fn new(path: &Path, scaled: Scaled) -> Self {
+    fn new(path: &Path, options: &Options) -> Self {
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let protocol = crate::protocol(path);
-        let code = emit::rust(&protocol, &Options { scaled, ..Options::default() });
+        let code = emit::rust(&protocol, options);
         Self { name, protocol, code }
     }
 

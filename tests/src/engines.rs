@@ -28,7 +28,13 @@ pub fn compare_decoding<P: canspec_runtime::Protocol>(
 /// # Panics
 ///
 /// If they disagree.
-pub fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal, known: &dyn WriteSignal, value: f64) {
+pub fn compare_encoding(
+    protocol: &Protocol,
+    message: &Message,
+    signal: &Signal,
+    known: &'static dyn WriteSignal,
+    value: f64,
+) {
     for limits in std::iter::once(Limits::Bits).chain(models(protocol).map(Limits::Range)) {
         let bits = raw_of(protocol, message, signal, &Input::Number(value), limits).ok();
         let expected = bits.map(|bits| {
@@ -153,7 +159,7 @@ fn read(protocol: &Protocol, signal: &Signal, reading: &interpret::Reading) -> (
 }
 
 /// Writes a value through a signal of the generated code.
-fn written(known: &dyn WriteSignal, value: f64, limits: Limits) -> Option<[u8; 8]> {
+fn written(known: &'static dyn WriteSignal, value: f64, limits: Limits) -> Option<[u8; 8]> {
     let mut payload = match limits {
         Limits::Bits => Payload::new("message", [0; 8]),
         Limits::Range(model) => Payload::within_limits("message", [0; 8]).for_model(model.map(number)),

@@ -108,11 +108,11 @@ pub trait KnownSignal: WriteSignal {
     /// # Errors
     ///
     /// As [`Signal::put`](canspec_runtime::Signal::put) has them.
-    fn put_bits(&self, bits: u64, payload: &mut Payload) -> Result<(), Error>;
+    fn put_bits(&'static self, bits: u64, payload: &mut Payload) -> Result<(), Error>;
 }
 
 impl<R: Raw, F: Physical<R>> KnownSignal for canspec_runtime::Signal<R, F> {
-    fn put_bits(&self, bits: u64, payload: &mut Payload) -> Result<(), Error> {
+    fn put_bits(&'static self, bits: u64, payload: &mut Payload) -> Result<(), Error> {
         self.put(R::from_bits(bits), payload)
     }
 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use canspec_codegen::emit::Scaled;
+use canspec_codegen::emit::{Goal, Scaled};
 use canspec_tests::bare::{Binary, Codec, Others, Program, Settings, is_installed};
 
 const SIZE: Settings<'static> = Settings { profile: "z", target: None };
@@ -20,28 +20,28 @@ fn linked(program: &Program, settings: Settings<'_>) -> Binary {
 
 #[test]
 fn every_function_of_every_protocol_links_without_std_and_without_panics() {
-    let program =
-        Program::everything(&[Codec::all("specs", Scaled::F64), Codec::all("tests/specs", Scaled::F64)].concat());
-    linked(&program, SIZE);
-    linked(&program, SPEED);
+    for (goal, settings) in [(Goal::Size, SIZE), (Goal::Speed, SPEED)] {
+        let codecs = ["specs", "tests/specs"].map(|folder| Codec::all(folder, Scaled::F64, goal));
+        linked(&Program::everything(&codecs.concat()), settings);
+    }
 }
 
 #[test]
 fn every_construct_of_the_language_links_without_std_and_without_panics() {
-    linked(&Program::everything(&Codec::all("tests/specs/features", Scaled::F64)), SIZE);
-    linked(&Program::everything(&Codec::all("tests/specs/devices", Scaled::F64)), SIZE);
+    linked(&Program::everything(&Codec::all("tests/specs/features", Scaled::F64, Goal::Size)), SIZE);
+    linked(&Program::everything(&Codec::all("tests/specs/devices", Scaled::F64, Goal::Size)), SIZE);
 }
 
 #[test]
 fn whole_steps_link_without_std_and_without_panics() {
     for folder in ["specs", "tests/specs/features"] {
-        linked(&Program::everything(&Codec::all(folder, Scaled::Steps)), SIZE);
+        linked(&Program::everything(&Codec::all(folder, Scaled::Steps, Goal::Size)), SIZE);
     }
 }
 
 #[test]
 fn one_indexing_expression_in_one_decoder_does_not_link() {
-    let mut codecs = Codec::all("specs", Scaled::F64);
+    let mut codecs = Codec::all("specs", Scaled::F64, Goal::Size);
     let Some(codec) = codecs.pop() else { return };
     codecs.push(codec.with_index());
     let message = link(&Program::everything(&codecs), SIZE).expect_err("a panic needs what nobody defines");
@@ -50,7 +50,7 @@ fn one_indexing_expression_in_one_decoder_does_not_link() {
 
 #[test]
 fn one_message_alone_does_not_link_the_others() {
-    for codec in Codec::all("specs", Scaled::F64) {
+    for codec in Codec::all("specs", Scaled::F64, Goal::Size) {
         let Some(owner) = codec.one_message() else { continue };
         let others = Others::new(&codec, &owner);
         let every = linked(&Program::decode(&codec), SIZE);
@@ -74,7 +74,7 @@ fn is_of_doubles(symbol: &str) -> bool {
 
 /// Returns the functions that calculate with doubles in a program that decodes, encodes, asks and reads replies.
 fn doubles(scaled: Scaled) -> Vec<String> {
-    let mut symbols = linked(&Program::traffic(&Codec::all("specs", scaled)), SINGLE).symbols();
+    let mut symbols = linked(&Program::traffic(&Codec::all("specs", scaled, Goal::Size)), SINGLE).symbols();
     symbols.retain(|symbol| is_of_doubles(symbol));
     symbols
 }

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use canspec_codegen::interpret::{self, Assembly, Form, decode};
 use canspec_codegen::model::{LongExample, LongMessage, Protocol, Signal, TextForm};
 use canspec_runtime::parts::{Assembler, Outcome, Parted as _};
-use canspec_runtime::{Bytes, Elements, Error, Frame, Kind, LongLayout, Text};
+use canspec_runtime::{Bytes, Elements, Error, Frame, Kind, LongLayout, Reason, Text};
 use canspec_tests::features_long_fields::Pack;
 use canspec_tests::features_parts_by_model::{self as by_model, Model};
 use canspec_tests::features_parts_of_controller::{self as labels, Label};
@@ -225,7 +225,8 @@ fn a_part_to_a_module_is_built_again_only_as_it_was() {
     let later = ProgramPart { part: 2, ..part };
     for (other, signal) in [(long, "data"), (later, "part")] {
         let built = received.with_content(ovens::Message::ProgramPart(other)).encode();
-        assert_eq!(built, Err(Error::Part { message: "program", signal }));
+        let Err(Error::Value(refused)) = built else { panic!("{built:?}") };
+        assert_eq!((refused.message(), refused.signal(), refused.reason()), ("program", signal, Reason::Part));
         // A module says what it has.
         let reply = Frame::new_raw(0x0B3, false, frames[0].bytes(), 8);
         let reply = ovens::Message::decode(&reply).expect("it confirms the frame");

@@ -3,7 +3,7 @@
 use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
 use canspec_runtime::client::{Client, Duty, Heard, Output, Pace, Step};
 use canspec_runtime::sim::{Answer, Device, Keeper};
-use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Received, Request};
+use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Reason, Received, Request};
 use canspec_tests::{
     devices_any_vendor as feature, devices_any_vendor_in_steps as in_steps, devices_any_vendor_switched as in_f32,
     features_controller_report as charging, infy_in_steps,
@@ -477,7 +477,7 @@ fn a_report_of_the_controller_sets_what_it_carries() {
     let report = |id, voltage: u32| Frame::new_raw(id, false, (u64::from(voltage) << 48).to_be_bytes(), 4);
     // 4000 steps of 0.1 V, and a limit of 1000 V.
     assert_eq!(set(400_000), Ok(vec![report(0x101, 4000)]));
-    assert!(set(1_000_100).is_err_and(|error| matches!(error, Error::Limits { .. })));
+    assert!(set(1_000_100).is_err_and(|error| matches!(error.reason(), Some(Reason::Limits { .. }))));
     let shown = |id, quantity| {
         let received = charging::Message::decode(&report(id, 4000)).expect("a report");
         [received.setting(quantity), received.quantity(quantity)]

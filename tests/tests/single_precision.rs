@@ -132,7 +132,7 @@ fn ties_go_away_from_zero() {
     assert_eq!([0.0625, -0.0625, 0.1875].map(|volts| millivolts.nearest_raw(volts)), [63, -63, 188]);
 }
 
-fn refusal<R: Integer>(signal: Signal<R, f32>, physical: f32) -> String {
+fn refusal<R: Integer>(signal: &'static Signal<R, f32>, physical: f32) -> String {
     let mut payload = Payload::within_limits("message", [0; 8]);
     signal.encode(physical, &mut payload).expect_err("a refusal").to_string()
 }
@@ -148,8 +148,8 @@ fn limits_and_special_values_are_singles() {
     assert_eq!(VOLTAGE.encode(0.1, &mut payload), Ok(()));
     assert_eq!(VOLTAGE.encode(25.7, &mut payload), Ok(()));
     assert_eq!(VOLTAGE.encode(6553.5, &mut payload), Ok(()));
-    assert_eq!(refusal(VOLTAGE, 25.8), "`voltage` of `message` is 25.8 V, but its limits are 0.1 and 25.7 V");
-    assert_eq!(refusal(VOLTAGE, f32::NAN), "`voltage` of `message` is no finite number");
+    assert_eq!(refusal(&VOLTAGE, 25.8), "`voltage` of `message` is 25.8 V, but its limits are 0.1 and 25.7 V");
+    assert_eq!(refusal(&VOLTAGE, f32::NAN), "`voltage` of `message` is no finite number");
     let mut reply = Payload::new("message", [0; 8]);
     let wide = VOLTAGE.encode(6553.6, &mut reply).expect_err("a refusal").to_string();
     assert_eq!(wide, "`voltage` of `message` is 6553.6 V, but its limits are 0 and 6553.5 V");

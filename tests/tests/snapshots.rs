@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use canspec_codegen::emit::{self, Options, Scaled, Switch};
+use canspec_codegen::emit::{self, Goal, Options, Scaled, Switch};
 use canspec_tests::{protocol, specs};
 
 /// Snapshots of one-feature specs stay short enough to be read.
@@ -50,7 +50,7 @@ fn each_option_adds_the_rust_that_was_reviewed() {
     let [serde, defmt, arbitrary] = ["serde", "defmt", "arbitrary"].map(gated);
     let gated = Options { serde, defmt, arbitrary, ..Options::default() };
     let [serde, defmt, arbitrary] = [const { Switch::Always }; 3];
-    let always = Options { scaled: Scaled::F32, serde, defmt, arbitrary };
+    let always = Options { scaled: Scaled::F32, goal: Goal::Size, serde, defmt, arbitrary };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs/features");
     compare(&folder.join("status_word.yaml"), "options/gated", &gated);
     compare(&folder.join("scaled_signal.yaml"), "options/always_f32", &always);

@@ -57,7 +57,7 @@ fn generated<P: Signals>(protocol: &Protocol) {
     signals::<P>(protocol).for_each(|(_, _, signal)| sweep(signal));
 }
 
-fn sweep(signal: &dyn WriteSignal) {
+fn sweep(signal: &'static dyn WriteSignal) {
     let place = signal.place();
     for bits in raw_values(place.width()) {
         let mut data = [0; 8];

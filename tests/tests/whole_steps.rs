@@ -34,7 +34,7 @@ impl Verdicts {
     fn compare(
         &mut self,
         signal: &Signal,
-        known: &dyn KnownSignal,
+        known: &'static dyn KnownSignal,
         (model, range): (Option<ModelId>, Option<Range>),
         raw: i128,
     ) {

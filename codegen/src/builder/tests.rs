@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::Builder;
-use crate::emit::{Options, Scaled, Switch};
+use super::{Builder, goal_of};
+use crate::emit::{Goal, Options, Scaled, Switch};
 
 /// A spec without errors, of the protocol `heater`.
 const HEATER: &str = r#"
@@ -392,10 +392,18 @@ fn outside_a_build_script_there_is_nowhere_to_write() {
 }
 
 #[test]
+fn code_is_for_size_where_the_profile_is() {
+    let goals = [None, Some("0"), Some("3"), Some("s"), Some("z")].map(goal_of);
+    assert_eq!(goals, [Goal::Speed, Goal::Speed, Goal::Speed, Goal::Size, Goal::Size]);
+}
+
+#[test]
 fn each_option_is_set_by_its_own_method() {
     let gated = |feature: &str| Switch::Gated(feature.to_owned());
-    let builder = Builder::new().scaled(Scaled::F32).serde(gated("a")).defmt(gated("b")).arbitrary(Switch::Always);
-    let options = Options { scaled: Scaled::F32, serde: gated("a"), defmt: gated("b"), arbitrary: Switch::Always };
+    let builder = Builder::new().scaled(Scaled::F32).goal(Goal::Size);
+    let builder = builder.serde(gated("a")).defmt(gated("b")).arbitrary(Switch::Always);
+    let (scaled, goal) = (Scaled::F32, Goal::Size);
+    let options = Options { scaled, goal, serde: gated("a"), defmt: gated("b"), arbitrary: Switch::Always };
     assert_eq!(builder.options, options);
     assert_eq!(Builder::new().options(options.clone()).options, options);
     assert_eq!(Builder::new().options, Options::default());

@@ -11,6 +11,8 @@ use crate::model::{Numeral, Signal};
 pub struct Options {
     /// What scaled values are.
     pub scaled: Scaled,
+    /// What programs are optimized for.
+    pub goal: Goal,
     /// `serde::Serialize` and `serde::Deserialize` of every type that carries values: messages, the enum of them,
     /// identifiers, targets, named values, status words and packed values.
     ///
@@ -57,6 +59,16 @@ impl Scaled {
         let is_decimal = signal.encoding.linear().is_some_and(|linear| linear.numeral == Numeral::Bcd);
         if is_decimal && !signal.encoding.is_unscaled() { Self::Steps } else { self }
     }
+}
+
+/// What programs are optimized for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Goal {
+    /// Speed: each place that builds a request has all code for it.
+    #[default]
+    Speed,
+    /// Size: the compiler decides where that code stands, and what messages share of it.
+    Size,
 }
 
 /// Whether generated code implements an optional trait.

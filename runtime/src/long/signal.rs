@@ -102,10 +102,10 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
     ///
     /// The same as those of `put`.
     pub fn write<T: Copy>(
-        &self,
+        &'static self,
         value: T,
         payload: &mut LongPayload<'_>,
-        put: impl Fn(&Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
+        put: impl Fn(&'static Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
     ) -> Result<(), Error> {
         self.write_all(&[value], payload, put)
     }
@@ -117,10 +117,10 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
     /// The same as those of `put`. It also refuses another number of elements than the document
     /// allows, or than the arrays have that are written already.
     pub fn write_some<T: Copy>(
-        &self,
+        &'static self,
         values: &[T],
         payload: &mut LongPayload<'_>,
-        put: impl Fn(&Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
+        put: impl Fn(&'static Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
     ) -> Result<(), Error> {
         payload.count(self.signal.own_name(), values.len())?;
         self.write_all(values, payload, put)
@@ -132,10 +132,10 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
     ///
     /// The same as those of `put`.
     pub fn write_all<T: Copy>(
-        &self,
+        &'static self,
         values: &[T],
         payload: &mut LongPayload<'_>,
-        put: impl Fn(&Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
+        put: impl Fn(&'static Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
     ) -> Result<(), Error> {
         values.iter().enumerate().try_for_each(|(index, value)| {
             let mut window = payload.rules;

@@ -4,7 +4,7 @@ use std::string::ToString;
 
 use super::*;
 use crate::plumbing::Lack;
-use crate::{Bytes, Payload, Place, Signal, Text};
+use crate::{Bytes, Payload, Place, Reason, Signal, Text};
 
 /// Eleven bytes at most: a count of cycles, four valves of two bits each, and one to four cells of two bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,6 +162,12 @@ fn a_text_of_more_than_eight_bytes_has_them_in_their_order() {
     assert_eq!((Plate::NAME.reach(4), Plate::NAME.byte().own_name()), (6, "name"));
 }
 
+/// Returns message and signal of a refused value, and why it is refused.
+fn said(error: Error) -> (&'static str, &'static str, Reason) {
+    let Error::Value(error) = error else { panic!("{error}") };
+    (error.message(), error.signal(), error.reason())
+}
+
 #[test]
 fn a_text_cannot_be_left_out_before_the_end() {
     let mut data = [0; 23];
@@ -169,8 +175,8 @@ fn a_text_cannot_be_left_out_before_the_end() {
     payload.end_after(22);
     assert_eq!(Plate::SERIAL.write_optional(&None, &mut payload), Ok(()));
     payload.end_after(23);
-    let missing = Error::Missing { message: "plate", signal: "serial" };
-    assert_eq!(Plate::SERIAL.write_optional(&None, &mut payload), Err(missing));
+    let missing = Plate::SERIAL.write_optional(&None, &mut payload).expect_err("there is room for it");
+    assert_eq!(said(missing), ("plate", "serial", Reason::Missing));
 }
 
 #[test]
@@ -180,8 +186,9 @@ fn a_device_model_has_only_blank_bytes_where_it_lacks_a_text() {
     let mut last = [0; 12];
     last[11] = 1;
     assert!(plate([0; 12]).encode_by(on(7), 0, &mut [0; 23]).is_ok());
-    let refused = Error::Meaning { message: "plate", signal: "serial" };
-    assert_eq!(plate(last).encode_by(on(7), 0, &mut [0; 23]), Err(refused));
+    let refused =
+        plate(last).encode_by(on(7), 0, &mut [0; 23]).map(|data| data.len()).expect_err("model 7 has no serial");
+    assert_eq!(said(refused), ("plate", "serial", Reason::Meaning));
     assert!(plate(last).encode_by(on(8), 0, &mut [0; 23]).is_ok());
 }
 
@@ -243,18 +250,19 @@ fn all_bytes_of_open_raw_bytes_belong_to_them() {
 
 #[test]
 fn a_device_model_that_lacks_an_open_text_is_sent_none_of_its_bytes() {
-    let text = |least: u16| {
-        let byte = Signal::new("text", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]);
-        LongText::<Text<6, b'_'>>::new(1, byte).at_least(least)
-    };
+    const BYTE: Signal<u8> = Signal::new("text", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]);
+    const TEXT: LongText<Text<6, b'_'>> = LongText::new(1, BYTE);
+    const TEXTS: [LongText<Text<6, b'_'>>; 2] = [TEXT.at_least(0), TEXT.at_least(1)];
     let written = |least: u16, letters: &str| {
         let mut data = [0xEE; 7];
         let rules = Payload::within_limits("open", [0; 8]).for_model(Some(7));
         let mut payload = LongPayload::new(rules, Some((least.into(), 6)), &mut data);
         let letters = Text::new(letters).expect("at most six letters");
-        text(least).write(&letters, &mut payload).map(|()| data)
+        TEXTS[usize::from(least)].write(&letters, &mut payload).map(|()| data)
     };
-    let refused = Err(Error::Meaning { message: "open", signal: "text" });
     assert_eq!(written(0, ""), Ok(*b"\xEE______"));
-    assert_eq!((written(0, "A"), written(1, "")), (refused, refused));
+    for (least, letters) in [(0, "A"), (1, "")] {
+        let refused = written(least, letters).expect_err("model 7 has no text");
+        assert_eq!(said(refused), ("open", "text", Reason::Meaning));
+    }
 }

@@ -3,6 +3,7 @@
 use core::marker::PhantomData;
 
 use super::LongPayload;
+use crate::error::Fault;
 use crate::{Elements, Error, Signal};
 
 /// Whole bytes as the value of a field.
@@ -83,7 +84,7 @@ impl<T: ByteRun> LongText<T> {
     /// # Errors
     ///
     /// Refuses bytes that the device model does not have, and too few bytes if none fills them up.
-    pub fn write(&self, text: &T, payload: &mut LongPayload<'_>) -> Result<(), Error> {
+    pub fn write(&'static self, text: &T, payload: &mut LongPayload<'_>) -> Result<(), Error> {
         let (bytes, sent) = (text.as_slice(), self.sent(text));
         if self.least.is_some() {
             payload.count(self.byte.own_name(), sent)?;
@@ -111,11 +112,11 @@ impl<T: ByteRun> LongText<T> {
     ///
     /// The same as [`write`](Self::write). It also refuses to leave out what the message is long
     /// enough for.
-    pub fn write_optional(&self, text: &Option<T>, payload: &mut LongPayload<'_>) -> Result<(), Error> {
+    pub fn write_optional(&'static self, text: &Option<T>, payload: &mut LongPayload<'_>) -> Result<(), Error> {
         match (text, payload.length()) {
             (Some(text), _) => self.write(text, payload),
             (None, Some(length)) if self.reach(T::MOST) > length => Ok(()),
-            (None, _) => Err(Error::Missing { message: payload.rules.message(), signal: self.byte.own_name() }),
+            (None, _) => Err(self.byte.refused(Fault::Missing, &payload.rules)),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Builds the requests that read and set quantities.
 
 use crate::layout::Decode;
-use crate::payload::Refusing;
 use crate::{
     AnySignal, Data, Destination, Error, Exchange, Layout, Payload, Quantities, Quantity, ReadPath, Request, Route,
 };
@@ -97,7 +96,7 @@ impl Layout for Written {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self(*data);
 
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         let constants = u64::from_be_bytes(*payload.data());
         payload.replace((constants | u64::from_be_bytes(self.0)).to_be_bytes());
         Ok(())

@@ -15,7 +15,7 @@ const BINARY: Signal<u16, f64> = Signal::new("power", Place::bytes(4, 5)).unit("
 const DELAY: Signal<u8> = Signal::new("delay", Place::byte(6)).unit("s").specials(&[(0, "never")]).absent();
 const COUNT: Signal<u32> = Signal::new("count", Place::bytes(0, 3));
 
-fn set(signal: &dyn SetNumber, value: i32) -> Result<u64, Error> {
+fn set(signal: &'static dyn SetNumber, value: i32) -> Result<u64, Error> {
     let mut payload = Payload::within_limits("set", [0; 8]);
     signal.set_number(value, &mut payload)?;
     Ok(u64::from_be_bytes(*payload.data()))

@@ -3,9 +3,9 @@
 use core::cmp::Ordering;
 use core::fmt;
 
+use crate::error::{Fault, Value};
 use crate::physical::Physical;
 use crate::raw::Raw;
-use crate::signal::named;
 use crate::{Data, Error, Meaning, Number, Payload, Place, Signal};
 
 /// What a signal says in one frame, for code that does not know the message.
@@ -78,8 +78,8 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {
         let bits = self.place.any_bits(*data, R::SIGNED);
         let value = R::from_bits(bits);
-        let meaning = match (named(self.specials, bits), self.scale) {
-            (Some(name), _) => Meaning::Name(name),
+        let meaning = match (self.special(bits), self.scale) {
+            (Some(index), _) => Meaning::Name(self.name_of(index)),
             (None, _) if self.is_by_model => Meaning::None,
             (None, Some(_)) if R::IS_NUMBER && value.is_finite() => {
                 Meaning::Number(self.physical(value).number(self.scale))
@@ -99,20 +99,20 @@ pub trait WriteSignal: AnySignal {
     ///
     /// Refuses unknown names, and values that the signal's bits cannot hold. If `payload` keeps to
     /// limits, it also refuses values outside them.
-    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
+    fn write(&'static self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
 }
 
 impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
-    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
+    fn write(&'static self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
         if R::IS_NUMBER && !self.is_by_model {
             if let Meaning::Number(number) = meaning {
                 let before = *payload.data();
                 F::write(self, number, payload)?;
-                return self.confirm(payload, before, || number);
+                return self.confirm(payload, before, Value::Number(number));
             }
         }
         let raw = self.special_value(meaning).or_else(|| self.plain_value(meaning));
-        raw.ok_or_else(|| self.meaningless(payload.message())).and_then(|raw| self.put(raw, payload))
+        raw.ok_or_else(|| self.refused(Fault::Meaning, payload)).and_then(|raw| self.put(raw, payload))
     }
 }
 
@@ -130,7 +130,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     /// Writes a number as its own raw value, or as the nearest one.
-    pub(crate) fn write_raw(&self, number: Number, payload: &mut Payload) -> Result<(), Error> {
+    pub(crate) fn write_raw(&'static self, number: Number, payload: &mut Payload) -> Result<(), Error> {
         let raw_of = |number| R::from_meaning(Meaning::Number(number));
         if let Some(raw) = raw_of(number).filter(|_| !self.is_scaled()) {
             return self.put(raw, payload);
@@ -141,25 +141,24 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
                 self.check_fraction(value, raw, payload)?;
                 self.put(raw, payload)
             }
-            None if value.is_nan() => Err(self.not_finite(payload.message())),
-            None => Err(self.unfit(number, payload.message())),
+            None => Err(self.refused(Fault::Width(Value::Number(number)), payload)),
         }
     }
 
     /// Tests a number with a fraction that is rounded to `raw`.
-    fn check_fraction(&self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
+    fn check_fraction(&'static self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
         let sent = self.physical(raw).number(self.scale).to_f64();
         let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
         if is_exact || !payload.keeps_limits() || !self.check_model(raw.to_bits(), payload)? {
             return Ok(());
         }
-        let number = Number::Float(value);
+        let (refused, told) = (|fault| Err(self.refused(fault, payload)), Value::Number(Number::Float(value)));
         let limits = self.limits_in(payload.model()).map(|limits| self.numbers(limits));
         match (limits, self.special(raw.to_bits())) {
             (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
-                Err(self.beyond([number, minimum, maximum], payload.message()))
+                refused(Fault::Limits(told))
             }
-            (_, Some(name)) => Err(self.hidden(number, name, payload.message())),
+            (_, Some(index)) => refused(Fault::Special(told, Some(index))),
             _ => Ok(()),
         }
     }

@@ -1,10 +1,10 @@
 //! Signals that a frame can lack, since it ends before them or since bits say that there is no value.
 
 use super::Signal;
-use crate::payload::Refusing;
+use crate::error::{Fault, Value};
 use crate::physical::{Physical, Scaled};
 use crate::raw::Raw;
-use crate::{Data, Error, Number, Payload};
+use crate::{Data, Error, Payload};
 
 impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns the raw value, if a frame of `length` data bytes has it.
@@ -32,30 +32,25 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// The same as [`put`](Self::put). It also refuses a value whose bits say that there is none.
     /// It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
-    pub fn put_some<E: Refusing>(&self, raw: Option<R>, payload: &mut Payload<E>) -> Result<(), E> {
+    pub fn put_some(&'static self, raw: Option<R>, payload: &mut Payload) -> Result<(), Error> {
         let Some(raw) = raw else { return self.left_out(payload) };
         let before = *payload.data();
         self.put(raw, payload)?;
-        self.confirm(payload, before, || self.physical(raw).number(self.scale))
+        self.confirm(payload, before, Value::Raw(raw.to_bits()))
     }
 
     /// Takes back a value whose bits say that there is none.
     #[inline(always)]
-    pub(super) fn confirm<E: Refusing>(
-        &self,
-        payload: &mut Payload<E>,
-        before: Data,
-        value: impl FnOnce() -> Number,
-    ) -> Result<(), E> {
+    pub(super) fn confirm(&'static self, payload: &mut Payload, before: Data, value: Value) -> Result<(), Error> {
         if self.is_there(*payload.data(), before.len()) {
             return Ok(());
         }
         payload.replace(before);
-        Err(payload.refusal(move |message| self.hidden(value(), "not_available", message)))
+        Err(self.refused(Fault::Special(value, None), payload))
     }
 
     /// Writes that there is no value, unless the frame ends before it.
-    fn left_out<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn left_out(&'static self, payload: &mut Payload) -> Result<(), Error> {
         match payload.length() {
             Some(length) if !self.place.is_within(length.into()) => Ok(()),
             _ if self.has_absent => {
@@ -64,7 +59,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
                 payload.replace(data);
                 Ok(())
             }
-            _ => Err(payload.refusal(move |message| Error::Missing { message, signal: self.name })),
+            _ => Err(self.refused(Fault::Missing, payload)),
         }
     }
 }
@@ -83,10 +78,10 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// The same as [`encode`](Self::encode). It also refuses a value whose bits say that there is
     /// none. It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
-    pub fn encode_some<E: Refusing>(&self, physical: Option<F>, payload: &mut Payload<E>) -> Result<(), E> {
+    pub fn encode_some(&'static self, physical: Option<F>, payload: &mut Payload) -> Result<(), Error> {
         let Some(physical) = physical else { return self.left_out(payload) };
         let before = *payload.data();
         self.encode(physical, payload)?;
-        self.confirm(payload, before, || Scaled::number(physical))
+        self.confirm(payload, before, physical.told())
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers as thousandths of their unit.
 
 use super::{AnySignal, Signal};
+use crate::error::{Fault, Value};
 use crate::physical::Physical;
 use crate::quantity::single;
 use crate::raw::Raw;
@@ -28,7 +29,7 @@ pub trait SetNumber {
     ///
     /// Refuses values outside the limits, or between the last step and the limit. It also refuses values that would be
     /// sent as bits that mean something else.
-    fn set_number(&self, value: i32, payload: &mut Payload) -> Result<(), Error>;
+    fn set_number(&'static self, value: i32, payload: &mut Payload) -> Result<(), Error>;
 }
 
 impl<R: Raw, F: Physical<R>> ReadNumber for Signal<R, F> {
@@ -53,7 +54,7 @@ impl<R: Raw, F: Physical<R>> SetNumber for Signal<R, F> {
         if self.place().is_within(length) { self.read_number(data) } else { None }
     }
 
-    fn set_number(&self, value: i32, payload: &mut Payload) -> Result<(), Error> {
+    fn set_number(&'static self, value: i32, payload: &mut Payload) -> Result<(), Error> {
         let parts = self.parts();
         let asked = asked(value, parts);
         if matches!(R::from_bits(0).number(), Number::Single(_)) {
@@ -61,7 +62,7 @@ impl<R: Raw, F: Physical<R>> SetNumber for Signal<R, F> {
             return self.set_raw(R::from_bits(single.to_bits().into()), asked, payload);
         }
         let Some([below, nearest, above]) = self.exact_scale().raws_around(value.into(), parts.into()) else {
-            return Err(self.unfit(asked, payload.message()));
+            return Err(self.refused(Fault::Width(Value::Number(asked)), payload));
         };
         // What lies between two steps must lie between two legal ones, whichever type the limits have.
         for step in [below, above] {
@@ -72,22 +73,19 @@ impl<R: Raw, F: Physical<R>> SetNumber for Signal<R, F> {
 }
 
 impl<R: Raw, F: Physical<R>> Signal<R, F> {
-    fn set_step(&self, step: i64, asked: Number, payload: &mut Payload) -> Result<(), Error> {
+    fn set_step(&'static self, step: i64, asked: Number, payload: &mut Payload) -> Result<(), Error> {
         match R::from_meaning(Meaning::Number(Number::Signed(step))) {
             Some(raw) => self.set_raw(raw, asked, payload),
-            None => Err(self.unfit(asked, payload.message())),
+            None => Err(self.refused(Fault::Width(Value::Number(asked)), payload)),
         }
     }
 
     /// Writes a raw number. An error names the one that was asked for.
-    fn set_raw(&self, raw: R, asked: Number, payload: &mut Payload) -> Result<(), Error> {
-        if let Some(name) = self.special(raw.to_bits()) {
-            return Err(self.hidden(asked, name, payload.message()));
+    fn set_raw(&'static self, raw: R, asked: Number, payload: &mut Payload) -> Result<(), Error> {
+        if let Some(index) = self.special(raw.to_bits()) {
+            return Err(self.refused(Fault::Special(Value::Number(asked), Some(index)), payload));
         }
-        self.put_some(Some(raw), payload).map_err(|error| {
-            let Error::Limits { message, signal, unit, minimum, maximum, .. } = error else { return error };
-            Error::Limits { message, signal, value: asked, unit, minimum, maximum }
-        })
+        self.put_some(Some(raw), payload).map_err(|error| error.of_asked(asked))
     }
 
     /// Returns how many parts of a unit are counted.

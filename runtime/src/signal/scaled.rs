@@ -1,6 +1,6 @@
 //! Signals whose physical value is calculated.
 
-use crate::payload::Refusing;
+use crate::error::Fault;
 use crate::physical::{Physical, Scaled};
 use crate::raw::Raw;
 use crate::{Data, Error, Payload, Signal};
@@ -30,7 +30,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// # Errors
     ///
     /// The same as those of [`encode`](Self::encode) into a request of `message`.
-    pub fn raw_of(&self, physical: F, message: &'static str) -> Result<R, Error> {
+    pub fn raw_of(&'static self, physical: F, message: &'static str) -> Result<R, Error> {
         let mut payload = Payload::within_limits(message, [0; 8]);
         self.encode(physical, &mut payload)?;
         Ok(self.get(payload.data()))
@@ -50,7 +50,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// refuses values outside them, before or after rounding. It then refuses values, too, that
     /// would be rounded to a special raw value.
     #[inline(always)]
-    pub fn encode<E: Refusing>(&self, physical: F, payload: &mut Payload<E>) -> Result<(), E> {
+    pub fn encode(&'static self, physical: F, payload: &mut Payload) -> Result<(), Error> {
         let is_decided = payload.keeps_limits() && self.limits_decide(payload);
         let raw = if is_decided {
             self.check(physical, payload)?;
@@ -84,35 +84,27 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
 
     /// Says why a value is refused that the bits cannot hold.
     #[inline(always)]
-    fn unheld<E: Refusing>(&self, physical: F, bits: u64, payload: &Payload<E>) -> E {
-        let (keeps_limits, model) = (payload.keeps_limits(), payload.model());
-        payload.refusal(move |message| self.unheld_in(keeps_limits, physical, bits, model, message))
-    }
-
-    /// Says the same. It takes the parts of the payload, or there would have to be one in memory.
-    #[cold]
-    fn unheld_in(&self, keeps_limits: bool, physical: F, bits: u64, model: Option<u8>, message: &'static str) -> Error {
-        let payload = Payload::within_limits(message, [0; 8]).for_model(model);
-        let has_limits = if keeps_limits { self.check_model(bits, &payload) } else { Ok(false) };
-        let checked =
-            has_limits.and_then(|has_limits| if has_limits { self.check(physical, &payload) } else { Ok(()) });
-        match checked {
+    fn unheld(&'static self, physical: F, bits: u64, payload: &Payload) -> Error {
+        let has_limits = if payload.keeps_limits() { self.check_model(bits, payload) } else { Ok(false) };
+        match has_limits {
             Err(error) => error,
-            Ok(()) if physical.is_nan() => self.not_finite(message),
-            Ok(()) => self.too_wide(physical, message),
+            Ok(true) if !self.is_legal(physical, payload.model()) => {
+                self.refused(Fault::Limits(physical.told()), payload)
+            }
+            Ok(_) => self.refused(Fault::Width(physical.told()), payload),
         }
     }
 
     /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
     /// have another meaning.
     #[inline(always)]
-    fn check_rounded<E: Refusing>(&self, physical: F, raw: i64, bits: u64, payload: &Payload<E>) -> Result<(), E> {
+    fn check_rounded(&'static self, physical: F, raw: i64, bits: u64, payload: &Payload) -> Result<(), Error> {
         let sent = || F::scaled(raw, self.exact_scale());
         match self.special(bits) {
             Some(_) if sent() == physical => Ok(()),
-            Some(name) => {
+            Some(index) => {
                 self.check(physical, payload)?;
-                Err(payload.refusal(move |message| self.hidden(Scaled::number(physical), name, message)))
+                Err(self.refused(Fault::Special(physical.told(), Some(index)), payload))
             }
             None => {
                 self.check(physical, payload)?;
@@ -129,7 +121,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     ///
     /// They are steps that the bits hold, no value between them means something else, and no device model has others.
     #[inline(always)]
-    fn limits_decide<E: Refusing>(&self, payload: &Payload<E>) -> bool {
+    fn limits_decide(&'static self, payload: &Payload) -> bool {
         let has_no_others = self.specials.is_empty() && self.lacking.is_empty() && self.model_limits.is_empty();
         match self.limits {
             Some((minimum, maximum)) if has_no_others && self.has_limits_on_steps(payload) => {
@@ -150,7 +142,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// What is rounded between them stays between them. The general limits are constants, so the
     /// compiler answers.
     #[inline(always)]
-    fn has_limits_on_steps<E: Refusing>(&self, payload: &Payload<E>) -> bool {
+    fn has_limits_on_steps(&'static self, payload: &Payload) -> bool {
         let is_general = self.model_limits.is_empty() || payload.model().is_none();
         is_general
             && match self.limits {

@@ -52,37 +52,37 @@ fn what_the_bits_cannot_hold_is_refused_and_changes_nothing() {
 
 #[test]
 fn all_ones_or_the_greatest_signed_number_say_that_there_is_no_value() {
-    let charge = Signal::<u8>::new("charge", Place::byte(0)).absent();
-    let heat = Signal::<i16, f64>::new("heat", Place::bytes(1, 2)).scale(1, 10).absent();
-    let read = |data| (charge.get_some(&data, 8), heat.decode_some(&data, 8));
+    const CHARGE: Signal<u8> = Signal::new("charge", Place::byte(0)).absent();
+    const HEAT: Signal<i16, f64> = Signal::new("heat", Place::bytes(1, 2)).scale(1, 10).absent();
+    let read = |data| (CHARGE.get_some(&data, 8), HEAT.decode_some(&data, 8));
     assert_eq!(read([0xFF, 0x7F, 0xFF, 0, 0, 0, 0, 0]), (None, None));
     assert_eq!(read([0x7F, 0xFF, 0xFF, 0, 0, 0, 0, 0]), (Some(127), Some(-0.1)));
     let mut payload = reply();
-    assert_eq!([charge.put_some(None, &mut payload), heat.encode_some(None, &mut payload)], [Ok(()); 2]);
+    assert_eq!([CHARGE.put_some(None, &mut payload), HEAT.encode_some(None, &mut payload)], [Ok(()); 2]);
     assert_eq!(payload.data(), &[0xFF, 0x7F, 0xFF, 0, 0, 0, 0, 0]);
-    assert_eq!([charge.put_some(Some(1), &mut payload), heat.encode_some(Some(0.2), &mut payload)], [Ok(()); 2]);
+    assert_eq!([CHARGE.put_some(Some(1), &mut payload), HEAT.encode_some(Some(0.2), &mut payload)], [Ok(()); 2]);
     assert_eq!(payload.data(), &[1, 0, 2, 0, 0, 0, 0, 0]);
-    let text = refusal(charge.put_some(Some(255), &mut payload));
+    let text = refusal(CHARGE.put_some(Some(255), &mut payload));
     assert_eq!(text, "`charge` of `report` is 255, which would be sent as `not_available`");
-    let text = refusal(heat.encode_some(Some(3276.7), &mut payload));
+    let text = refusal(HEAT.encode_some(Some(3276.7), &mut payload));
     assert_eq!(text, "`heat` of `report` is 3276.7, which would be sent as `not_available`");
     assert_eq!(payload.data(), &[1, 0, 2, 0, 0, 0, 0, 0]);
 }
 
 #[test]
 fn a_value_is_left_out_only_where_the_frame_ends_before_it() {
-    let hours = Signal::<u16>::new("hours", Place::bytes(2, 3));
-    let read = |length| hours.get_some(&[0, 0, 1, 2, 0, 0, 0, 0], length);
+    const HOURS: Signal<u16> = Signal::new("hours", Place::bytes(2, 3));
+    let read = |length| HOURS.get_some(&[0, 0, 1, 2, 0, 0, 0, 0], length);
     assert_eq!([2, 3, 4, 8].map(read), [None, None, Some(0x0102), Some(0x0102)]);
     let left_out = |length| {
         let mut payload = reply();
         payload.end_after(length);
-        hours.put_some(None, &mut payload)
+        HOURS.put_some(None, &mut payload)
     };
     assert_eq!([2, 3].map(left_out), [Ok(()); 2]);
     let text = "`hours` of `report` is left out, but what stands behind it is not";
     assert_eq!(refusal(left_out(4)), text);
-    assert_eq!(refusal(hours.put_some(None, &mut reply())), text);
+    assert_eq!(refusal(HOURS.put_some(None, &mut reply())), text);
     assert!([4, 5].map(|length| reply().received_with(4).had(length)) == [true, false]);
 }
 
@@ -117,34 +117,34 @@ fn a_special_value_is_legal_outside_the_limits() {
 
 #[test]
 fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_limits_too() {
+    const SLOPE: Signal<u8, f64> = Signal::new("slope", Place::byte(0)).limits(0.5, 9.5);
     // 20.06 A would be raw 201.
     assert_eq!(LIMIT.encode(20.04, &mut request()), Ok(()));
     let text = refusal(LIMIT.encode(20.06, &mut request()));
     assert_eq!(text, "`limit` of `report` is 20.1 A, but its limits are 0.04 and 20.06 A");
     assert_eq!(LIMIT.encode(20.06, &mut reply()), Ok(()));
-    let slope = Signal::<u8, f64>::new("slope", Place::byte(0)).limits(0.5, 9.5);
-    let written = |value| slope.write(Meaning::Number(Number::Float(value)), &mut request()).is_ok();
+    let written = |value| SLOPE.write(Meaning::Number(Number::Float(value)), &mut request()).is_ok();
     assert_eq!([0.49, 0.5, 9.49, 9.5].map(written), [false, true, true, false]);
 }
 
 #[test]
 fn a_limit_of_a_device_model_counts_for_what_is_sent_too() {
+    const SIGNAL: Signal<u8, f64> = LIMIT.limits(0.0, 25.0).model_limits(&[(3, Some((0.04, 20.06)))]);
     // 20.06 A would be raw 201.
-    let signal = LIMIT.limits(0.0, 25.0).model_limits(&[(3, Some((0.04, 20.06)))]);
-    let takes = |model, current| signal.encode(current, &mut request().for_model(model)).is_ok();
+    let takes = |model, current| SIGNAL.encode(current, &mut request().for_model(model)).is_ok();
     assert_eq!([20.04, 20.06].map(|current| takes(Some(3), current)), [true, false]);
     assert_eq!([25.0, 25.04].map(|current| takes(None, current)), [true, false]);
 }
 
 #[test]
 fn a_number_that_would_be_sent_as_a_special_value_is_refused() {
+    const UNLIMITED: Signal<u8> = Signal::new("interval", Place::byte(1)).unit("s").specials(&[(0, "never")]);
     let text = refusal(LIMIT.encode(0.04, &mut request()));
     assert_eq!(text, "`limit` of `report` is 0.04 A, which would be sent as `unlimited`");
     assert_eq!(LIMIT.encode(0.0, &mut request()), Ok(()));
     assert_eq!(LIMIT.encode(0.05, &mut request()), Ok(()));
     assert_eq!(LIMIT.encode(0.04, &mut reply()), Ok(()));
-    let unlimited = Signal::<u8>::new("interval", Place::byte(1)).unit("s").specials(&[(0, "never")]);
-    let written = |value| unlimited.write(Meaning::Number(Number::Float(value)), &mut request());
+    let written = |value| UNLIMITED.write(Meaning::Number(Number::Float(value)), &mut request());
     let text = refusal(written(0.4));
     assert_eq!(text, "`interval` of `report` is 0.4 s, which would be sent as `never`");
     assert_eq!([0.0, 0.5].map(written), [Ok(()), Ok(())]);
@@ -152,12 +152,12 @@ fn a_number_that_would_be_sent_as_a_special_value_is_refused() {
 
 #[test]
 fn a_float_meets_a_limit_as_precisely_as_it_can() {
+    const UPPER: Signal<f32, f64> = FREQUENCY.limits(45.0, 65.3);
     assert_eq!(FREQUENCY.put(65.7, &mut request()), Ok(()));
     assert!(FREQUENCY.put(65.700_01, &mut request()).is_err());
     // The float nearest to 65.3 lies above it.
-    let upper = FREQUENCY.limits(45.0, 65.3);
-    assert_eq!(upper.put(65.3, &mut request()), Ok(()));
-    assert!(upper.put(65.300_01, &mut request()).is_err());
+    assert_eq!(UPPER.put(65.3, &mut request()), Ok(()));
+    assert!(UPPER.put(65.300_01, &mut request()).is_err());
     // The float nearest to 65.7 lies below it, and both are legal.
     let written = |value| FREQUENCY.write(Meaning::Number(Number::Float(value)), &mut request());
     assert_eq!(written(65.7), Ok(()));
@@ -172,24 +172,24 @@ const HALVES: Signal<u8> =
 
 #[test]
 fn whole_steps_meet_limits_as_integers_and_are_told_in_the_unit() {
+    const NARROW: Signal<i16> = Signal::new("slope", Place::bytes(0, 1).bits(11, 0)).unit("V").scale(1, 4);
     assert_eq!([0, 1, 200].map(|raw| STEPS.put(raw, &mut request())), [Ok(()); 3]);
     let text = refusal(STEPS.put(201, &mut request()));
     assert_eq!(text, "`limit` of `report` is 20.1 A, but its limits are 0.1 and 20 A");
     let text = refusal(HALVES.put(241, &mut request()));
     assert_eq!(text, "`temperature` of `report` is 80.5 °C, but its limits are -40 and 80 °C");
-    let narrow = Signal::<i16>::new("slope", Place::bytes(0, 1).bits(11, 0)).unit("V").scale(1, 4);
-    let text = refusal(narrow.put(2048, &mut reply()));
+    let text = refusal(NARROW.put(2048, &mut reply()));
     assert_eq!(text, "`slope` of `report` is 512 V, but its limits are -512 and 511.75 V");
 }
 
 #[test]
 fn limits_of_steps_that_count_down_are_told_from_the_lower_one_on() {
-    let falling = Signal::<u8>::new("depth", Place::byte(0)).unit("m").scale(-1, 2).limits(3, 10);
-    assert_eq!([3, 10].map(|raw| falling.put(raw, &mut request())), [Ok(()); 2]);
-    let text = refusal(falling.put(11, &mut request()));
+    const FALLING: Signal<u8> = Signal::new("depth", Place::byte(0)).unit("m").scale(-1, 2).limits(3, 10);
+    assert_eq!([3, 10].map(|raw| FALLING.put(raw, &mut request())), [Ok(()); 2]);
+    let text = refusal(FALLING.put(11, &mut request()));
     assert_eq!(text, "`depth` of `report` is -5.5 m, but its limits are -5 and -1.5 m");
-    assert_eq!(AnySignal::limits(&falling).map(|(lower, upper)| (lower.to_f64(), upper.to_f64())), Some((-5.0, -1.5)));
-    let text = refusal(falling.write(Meaning::Number(Number::Float(0.5)), &mut reply()));
+    assert_eq!(AnySignal::limits(&FALLING).map(|(lower, upper)| (lower.to_f64(), upper.to_f64())), Some((-5.0, -1.5)));
+    let text = refusal(FALLING.write(Meaning::Number(Number::Float(0.5)), &mut reply()));
     assert_eq!(text, "`depth` of `report` is 0.5 m, but its limits are -127.5 and 0 m");
 }
 
@@ -271,9 +271,9 @@ fn a_float_keeps_the_bits_of_a_nan() {
 
 #[test]
 fn limits_of_64_bits_are_exact() {
+    const COUNTER: Signal<u64> = Signal::new("counter", Place::bytes(0, 7)).limits(1, LIMIT);
     // 2^53 + 3 is no double; the nearest one is 2^53 + 4.
     const LIMIT: u64 = (1 << 53) + 3;
-    const COUNTER: Signal<u64> = Signal::new("counter", Place::bytes(0, 7)).limits(1, LIMIT);
     assert_eq!([1, LIMIT].map(|count| COUNTER.put(count, &mut request())), [Ok(()), Ok(())]);
     assert!(COUNTER.put(LIMIT + 1, &mut request()).is_err());
     let written = |number| COUNTER.write(Meaning::Number(number), &mut request()).is_ok();

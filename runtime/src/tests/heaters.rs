@@ -1,6 +1,6 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Pattern, Refusing, Shown, Task, Way, Who};
+use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
 use crate::{
     Access, AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields,
     Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -174,7 +174,7 @@ impl Layout for Heat {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.decode(data) };
 
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.encode(self.power_w, payload)
     }
 }

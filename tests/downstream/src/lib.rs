@@ -17,6 +17,11 @@ pub mod pump {
     canspec_runtime::include_protocol!("pump");
 }
 
+/// Rectifiers, as `specs/rectifier.yaml` describes them.
+pub mod rectifier {
+    canspec_runtime::include_protocol!("rectifier");
+}
+
 /// Energy meters, as `specs/meter.yaml` describes them.
 pub mod meter {
     canspec_runtime::include_protocol!("meter");

@@ -182,7 +182,7 @@ impl Layout for Cells {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
         if self.voltage_v[2].is_some() || self.group[2].is_some() {
             payload.end_after(6);
@@ -241,7 +241,7 @@ impl Layout for State {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT_1.encode(self.current_a[0], payload)?;
         Self::CURRENT_2.encode(self.current_a[1], payload)?;
         Self::VALVE_1.put(self.valve[0], payload)?;

@@ -75,24 +75,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Fan => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Fan => IdFilter::ANY.id(Identifier::SENDER, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Fan, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
@@ -131,6 +132,7 @@ pub struct Speed {
     pub value_rpm: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("rpm").scale(10, 1);
@@ -142,9 +144,9 @@ impl Speed {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -154,7 +156,7 @@ impl Layout for Speed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_rpm, payload)
     }
 }
@@ -169,6 +171,7 @@ pub struct Temperature {
     pub value_c: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Temperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8, f64> = Signal::new("value", Place::byte(1)).unit("°C").offset(-40, 1);
@@ -180,9 +183,9 @@ impl Temperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -192,7 +195,7 @@ impl Layout for Temperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
     }
 }

@@ -72,24 +72,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::ToVehicle => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::ToVehicle => IdFilter::ANY.id(Identifier::SENDER, 0x2),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, _: Who, _: Option<i32>) -> Option<IdFilter> {
         None
     }
@@ -139,6 +140,7 @@ pub struct Delivered {
     pub voltage_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Delivered {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> =
@@ -152,9 +154,9 @@ impl Delivered {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -164,7 +166,7 @@ impl Layout for Delivered {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
     }
 }
@@ -194,7 +196,7 @@ impl Layout for Demanded {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
     }
 }

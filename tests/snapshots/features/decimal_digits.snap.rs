@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Meter(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Meter(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Meter(number), Who::One) => {
@@ -207,6 +208,7 @@ pub struct Delay {
     pub value_min: Bcd<u16>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Delay {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bcd<u16>, f64> =
@@ -221,9 +223,9 @@ impl Delay {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -233,7 +235,7 @@ impl Layout for Delay {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_min, payload)
     }
 }
@@ -253,6 +255,7 @@ pub struct Output {
     pub temperature_raw: Option<Bcd<u16>>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Output {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<Bcd<u16>> = Signal::new("voltage", Place::bytes(0, 1))
@@ -283,9 +286,9 @@ impl Output {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -299,7 +302,7 @@ impl Layout for Output {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_raw, payload)?;
         Self::CURRENT.put(self.current_ma, payload)?;
         Self::TEMPERATURE.put_some(self.temperature_raw, payload)
@@ -315,6 +318,7 @@ pub struct Month {
     pub value: MonthValue,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Month {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<MonthValue> = Signal::new("value", Place::bytes(0, 1));
@@ -326,9 +330,9 @@ impl Month {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -338,7 +342,7 @@ impl Layout for Month {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }

@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Pack(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Pack(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Pack(number), Who::One) => {
@@ -156,6 +157,7 @@ pub struct Battery {
     pub level_percent: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Battery {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
@@ -171,9 +173,9 @@ impl Battery {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -187,7 +189,7 @@ impl Layout for Battery {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)?;
         Self::LEVEL.put(self.level_percent, payload)

@@ -214,7 +214,7 @@ impl Layout for EnginePart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::COUNTER.put(self.counter, payload)?;
         Self::DATA.put(self.data, payload)
@@ -316,7 +316,7 @@ impl Layout for CellsPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::COUNTER.put(self.counter, payload)?;
         Self::DATA.put(self.data, payload)

@@ -97,17 +97,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Oven(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Oven(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -118,7 +119,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Oven(number), Who::One) => {
@@ -181,6 +182,7 @@ pub struct All {
     pub power: Option<Power>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl All {
     /// The access `scan`, for filters and blank frames of it.
     pub const SCAN: Exchange = SCAN_ACCESS.of("all", FRAME.id(Identifier::COMMAND, 0x04));
@@ -188,9 +190,9 @@ impl All {
     /// Builds the request [`scan`](SCAN_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn scan(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SCAN.request_to(route, &())
+        Self::SCAN.inlined_request_to(route, &())
     }
 }
 
@@ -242,7 +244,7 @@ impl Layout for Heat {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_c, payload)
     }
 }
@@ -271,7 +273,7 @@ impl Layout for Power {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }

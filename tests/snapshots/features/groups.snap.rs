@@ -181,7 +181,7 @@ impl Layout for State {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ALARMS_LEVEL.encode(self.alarms_level_v, payload)?;
         Self::ALARMS_PACK.put(self.alarms_pack, payload)?;
         Self::ALARMS_CELL_1.put(self.alarms_cell[0], payload)?;

@@ -130,10 +130,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::All => 0,
@@ -141,7 +142,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::All => IdFilter::ANY.id(Identifier::FORMAT, 0x0DB).id(Identifier::TARGET, 0x33).documented(
@@ -156,7 +157,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::All, Who::Each) => IdFilter::ANY.id(Identifier::FORMAT, 0x0DA),
@@ -368,6 +369,7 @@ pub struct TpSingleFrame {
     pub data: [Option<Bytes<1>>; 7],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpSingleFrame {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u8> = Signal::new("size", Place::byte(0).bits(3, 0)).limits(1, 7);
@@ -401,9 +403,9 @@ impl TpSingleFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -439,7 +441,7 @@ impl Layout for TpSingleFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
         if self.data[1].is_some() {
             payload.end_after(3);
@@ -481,6 +483,7 @@ pub struct TpFirstFrame {
     pub data: Bytes<6>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpFirstFrame {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(0, 1).bits(11, 0)).limits(8, 4095);
@@ -500,9 +503,9 @@ impl TpFirstFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -512,7 +515,7 @@ impl Layout for TpFirstFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::DATA.put(self.data, payload)
     }
@@ -533,6 +536,7 @@ pub struct TpConsecutiveFrame {
     pub data: [Option<Bytes<1>>; 7],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpConsecutiveFrame {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0).bits(3, 0));
@@ -566,9 +570,9 @@ impl TpConsecutiveFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -604,7 +608,7 @@ impl Layout for TpConsecutiveFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
         if self.data[1].is_some() {
             payload.end_after(3);
@@ -654,6 +658,7 @@ pub struct TpFlowControl {
     pub padding: Option<Bytes<5>>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpFlowControl {
     /// The signal `status`, to read or write it alone, or to ask for its limits.
     pub const STATUS: Signal<TpFlowControlStatus> = Signal::new("status", Place::byte(0).bits(3, 0));
@@ -679,9 +684,9 @@ impl TpFlowControl {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -702,7 +707,7 @@ impl Layout for TpFlowControl {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(3);
         if self.padding.is_some() {
             payload.end_after(8);

@@ -139,7 +139,7 @@ impl Layout for MakerPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }
@@ -216,7 +216,7 @@ impl Layout for LabelPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }

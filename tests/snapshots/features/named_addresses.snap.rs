@@ -97,17 +97,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Relay(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Relay(number) => IdFilter::ANY
@@ -116,7 +117,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Relay(number), Who::One) => IdFilter::ANY
@@ -247,6 +248,7 @@ pub struct SwitchRelay {
     pub power: SwitchRelayPower,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchRelay {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<SwitchRelayPower> = Signal::new("power", Place::byte(0));
@@ -258,9 +260,9 @@ impl SwitchRelay {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -270,7 +272,7 @@ impl Layout for SwitchRelay {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)
     }
 }

@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Heater(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Heater(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Heater(number), Who::One) => {
@@ -258,6 +259,7 @@ pub struct Switch {
     pub lamp: SwitchLamp,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Switch {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
@@ -271,9 +273,9 @@ impl Switch {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -283,7 +285,7 @@ impl Layout for Switch {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)?;
         Self::LAMP.put(self.lamp, payload)
     }

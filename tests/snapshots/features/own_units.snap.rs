@@ -71,24 +71,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Pump => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Pump => IdFilter::ANY.id(Identifier::SENDER, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Pump, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
@@ -155,6 +156,7 @@ pub struct SetDose {
     pub weight_kg: i16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetDose {
     /// The signal `flow`, to read or write it alone, or to ask for its limits.
     pub const FLOW: Signal<u16, f64> =
@@ -169,9 +171,9 @@ impl SetDose {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -182,7 +184,7 @@ impl Layout for SetDose {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::FLOW.encode(self.flow_l_per_min, payload)?;
         Self::WEIGHT.put(self.weight_kg, payload)
     }

@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Battery(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Battery(number) => IdFilter::ANY.id(Identifier::TO_HOST, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Battery(number), Who::One) => {
@@ -152,6 +153,7 @@ pub struct State {
     pub cells: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl State {
     /// The signal `cells`, to read or write it alone, or to ask for its limits.
     pub const CELLS: Signal<u8> = Signal::new("cells", Place::byte(0));
@@ -163,9 +165,9 @@ impl State {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -175,7 +177,7 @@ impl Layout for State {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CELLS.put(self.cells, payload)
     }
 }
@@ -193,6 +195,7 @@ pub struct Cells {
     pub group: Elements<u8, 8>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cells {
     /// The signal `cycles`, to read or write it alone, or to ask for its limits.
     pub const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(1, 0)));
@@ -205,9 +208,9 @@ impl Cells {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<CellsPart>, Error> {
-        CellsPart::READ.request_to(route, &())
+        CellsPart::READ.inlined_request_to(route, &())
     }
 }
 
@@ -258,7 +261,7 @@ impl Layout for CellsPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }

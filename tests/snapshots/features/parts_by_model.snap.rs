@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Battery(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Battery(number) => IdFilter::ANY.id(Identifier::TO_HOST, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Battery(number), Who::One) => {
@@ -183,6 +184,7 @@ pub struct Label {
     pub hours_h: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Label {
     /// The signal `serial`, to read or write it alone, or to ask for its limits.
     pub const SERIAL: LongSignal<Text<8>> = LongSignal::new(0, Signal::new("serial", Place::bytes(0, 7)));
@@ -192,9 +194,9 @@ impl Label {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
-        LabelPart::READ.request_to(route, &())
+        LabelPart::READ.inlined_request_to(route, &())
     }
 }
 
@@ -239,7 +241,7 @@ impl Layout for LabelPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }

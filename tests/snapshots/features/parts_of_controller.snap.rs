@@ -71,24 +71,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::All => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::All => IdFilter::ANY.id(Identifier::OVEN, 0xF),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, _: Who, _: Option<i32>) -> Option<IdFilter> {
         None
     }
@@ -192,7 +193,7 @@ impl Layout for LabelPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.keep(self.part, payload)?;
         Self::COUNTER.put(self.counter, payload)?;
         Self::DATA.keep(self.data, payload)

@@ -91,17 +91,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Oven(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Oven(number) => {
@@ -110,7 +111,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Oven(number), Who::One) => {
@@ -202,6 +203,7 @@ pub struct State {
     pub steps: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl State {
     /// The signal `steps`, to read or write it alone, or to ask for its limits.
     pub const STEPS: Signal<u8> = Signal::new("steps", Place::byte(0));
@@ -213,9 +215,9 @@ impl State {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -225,7 +227,7 @@ impl Layout for State {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STEPS.put(self.steps, payload)
     }
 }
@@ -242,6 +244,7 @@ pub struct Program {
     pub temperature_c: Elements<f64, 6>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Program {
     /// The signal `hold`, to read or write it alone, or to ask for its limits.
     pub const HOLD: LongSignal<u8> = LongSignal::new(0, Signal::new("hold", Place::byte(0)).unit("min").limits(1, 60));
@@ -259,9 +262,9 @@ impl Program {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<ProgramPart>, Error> {
-        ProgramPart::READ.request_to(route, &())
+        ProgramPart::READ.inlined_request_to(route, &())
     }
 
     /// Builds the frames of the request [`set`](SET_ACCESS) with these values, in parts.
@@ -319,7 +322,7 @@ impl Layout for ProgramPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.keep(self.part, payload)?;
         Self::DATA.keep(self.data, payload)
     }

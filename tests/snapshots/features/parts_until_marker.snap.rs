@@ -94,17 +94,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Device(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Device(number) => IdFilter::ANY.id(Identifier::TO_HOST, 0x0).documented(
@@ -115,7 +116,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Device(number), Who::One) => {
@@ -166,6 +167,7 @@ pub struct Label {
     pub text: Elements<Text<6>, 64>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Label {
     /// The elements of `text`, to read or write one alone, or to ask for their limits.
     pub const TEXT: LongSignal<Text<6>> = LongSignal::new(0, Signal::new("text", Place::bytes(0, 5))).every(6);
@@ -173,9 +175,9 @@ impl Label {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
-        LabelPart::READ.request_to(route, &())
+        LabelPart::READ.inlined_request_to(route, &())
     }
 }
 
@@ -219,7 +221,7 @@ impl Layout for LabelPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }

@@ -104,10 +104,11 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Peer => 0,
@@ -116,7 +117,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Peer => IdFilter::ANY
@@ -135,7 +136,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Peer, Who::One) => IdFilter::ANY
@@ -229,6 +230,7 @@ pub struct Limits {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Limits {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16, f64> =
@@ -241,9 +243,9 @@ impl Limits {
     /// Builds the request [`offer`](OFFER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn offer(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::OFFER.request_to(route, self)
+        Self::OFFER.inlined_request_to(route, self)
     }
 }
 
@@ -253,7 +255,7 @@ impl Layout for Limits {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.encode(self.current_a, payload)
     }
 }

@@ -77,24 +77,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Device => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Device => IdFilter::ANY.id(Identifier::DIRECTION, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Device, Who::One) => IdFilter::ANY.id(Identifier::DIRECTION, 0x1),
@@ -140,6 +141,7 @@ pub struct Speed {
     pub value_rpm: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("rpm").limits(300, 3000);
@@ -156,9 +158,9 @@ impl Speed {
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -168,7 +170,7 @@ impl Layout for Speed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_rpm, payload)
     }
 }
@@ -197,7 +199,7 @@ impl Layout for Refusal {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }

@@ -88,17 +88,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Heater(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Heater(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -109,7 +110,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Heater(number), Who::One) => {
@@ -190,6 +191,7 @@ pub struct VoltageLimit {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl VoltageLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").limits(0.1, 750.0);
@@ -203,17 +205,17 @@ impl VoltageLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -223,7 +225,7 @@ impl Layout for VoltageLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }

@@ -77,24 +77,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Device => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Device => IdFilter::ANY.id(Identifier::DIRECTION, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Device, Who::One) => IdFilter::ANY.id(Identifier::DIRECTION, 0x1),
@@ -144,6 +145,7 @@ pub struct Voltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -155,9 +157,9 @@ impl Voltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -167,7 +169,7 @@ impl Layout for Voltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -184,6 +186,7 @@ pub struct Revision {
     pub software: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Revision {
     /// The signal `hardware`, to read or write it alone, or to ask for its limits.
     pub const HARDWARE: Signal<u16> = Signal::new("hardware", Place::bytes(4, 5));
@@ -197,9 +200,9 @@ impl Revision {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -209,7 +212,7 @@ impl Layout for Revision {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HARDWARE.put(self.hardware, payload)?;
         Self::SOFTWARE.put(self.software, payload)
     }

@@ -71,24 +71,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Battery => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Battery => IdFilter::ANY.id(Identifier::SENDER, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Battery, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
@@ -217,6 +218,7 @@ pub struct SetLimits {
     pub alarms: SetLimitsAlarms,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLimits {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u8> = Signal::new("current", Place::byte(0)).unit("A").limits(0, 100);
@@ -242,19 +244,20 @@ impl SetLimits {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetLimits> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetLimits>, Error> {
-        SetLimits::SET.request_within(self.model, route, &self.values)
+        SetLimits::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -268,7 +271,7 @@ impl Layout for SetLimits {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_a, payload)?;
         Self::HEATING.put(self.heating, payload)?;
         Self::ALARMS.put(self.alarms, payload)

@@ -71,24 +71,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Rectifier => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Rectifier => IdFilter::ANY.id(Identifier::SENDER, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Rectifier, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
@@ -176,6 +177,7 @@ pub struct SetOutput {
     pub temperature_raw: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(0, 1))
@@ -188,11 +190,20 @@ impl SetOutput {
 
     /// Returns the signal `current` of a device model; `None` of a model without a scale.
     #[must_use]
-    pub const fn current_on(model: Model) -> Option<Signal<u16, f64>> {
+    pub const fn current_on(model: Model) -> Option<&'static Signal<u16, f64>> {
         match model {
-            Model::R4830 => Some(Self::CURRENT.on_model().scale(1, 1250).limits(0.0, 1.0)),
-            Model::R4850X20 => Some(Self::CURRENT.on_model().unit("A").scale(1, 20).limits(0.0, 50.0)),
-            Model::R4850X30 => Some(Self::CURRENT.on_model().unit("A").scale(1, 30).limits(0.0, 53.5)),
+            Model::R4830 => {
+                const SIGNAL: Signal<u16, f64> = SetOutput::CURRENT.on_model().scale(1, 1250).limits(0.0, 1.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850X20 => {
+                const SIGNAL: Signal<u16, f64> = SetOutput::CURRENT.on_model().unit("A").scale(1, 20).limits(0.0, 50.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850X30 => {
+                const SIGNAL: Signal<u16, f64> = SetOutput::CURRENT.on_model().unit("A").scale(1, 30).limits(0.0, 53.5);
+                Some(&SIGNAL)
+            }
         }
     }
 
@@ -201,10 +212,16 @@ impl SetOutput {
 
     /// Returns the signal `temperature` of a device model; `None` of a model without a scale.
     #[must_use]
-    pub const fn temperature_on(model: Model) -> Option<Signal<u8, f64>> {
+    pub const fn temperature_on(model: Model) -> Option<&'static Signal<u8, f64>> {
         match model {
-            Model::R4830 | Model::R4850X20 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2)),
-            Model::R4850X30 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2).offset(-40, 1)),
+            Model::R4830 | Model::R4850X20 => {
+                const SIGNAL: Signal<u8, f64> = SetOutput::TEMPERATURE.on_model().unit("°C").scale(1, 2);
+                Some(&SIGNAL)
+            }
+            Model::R4850X30 => {
+                const SIGNAL: Signal<u8, f64> = SetOutput::TEMPERATURE.on_model().unit("°C").scale(1, 2).offset(-40, 1);
+                Some(&SIGNAL)
+            }
         }
     }
 
@@ -224,9 +241,9 @@ impl SetOutput {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 
     /// Returns the number that `current` is on a device model; `None` if it is none.
@@ -239,7 +256,7 @@ impl SetOutput {
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_current(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal = Self::current_on(model).ok_or(Error::Meaning { message: "set_output", signal: "current" })?;
+        let signal = Self::current_on(model).ok_or(Self::CURRENT.without_scale("set_output"))?;
         self.current_raw = signal.raw_of(value, "set_output")?;
         Ok(())
     }
@@ -254,20 +271,20 @@ impl SetOutput {
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_temperature(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal =
-            Self::temperature_on(model).ok_or(Error::Meaning { message: "set_output", signal: "temperature" })?;
+        let signal = Self::temperature_on(model).ok_or(Self::TEMPERATURE.without_scale("set_output"))?;
         self.temperature_raw = signal.raw_of(value, "set_output")?;
         Ok(())
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetOutput> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        SetOutput::SET.request_within(self.model, route, &self.values)
+        SetOutput::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -278,7 +295,7 @@ impl Layout for SetOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_raw, payload)?;
         Self::TEMPERATURE.put(self.temperature_raw, payload)
     }

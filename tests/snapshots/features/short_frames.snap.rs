@@ -85,10 +85,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::All => 0,
@@ -96,7 +97,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::All => IdFilter::ANY.id(Identifier::FUNCTION, 0xF).id(Identifier::NODE, 0x00),
@@ -108,7 +109,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Rectifier(number), Who::One) => {
@@ -177,6 +178,7 @@ pub struct KeepAlive {
     pub outputs: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<u8> = Signal::new("outputs", Place::byte(1));
@@ -188,9 +190,9 @@ impl KeepAlive {
     /// Builds the request [`tell`](TELL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TELL.request_to(route, self)
+        Self::TELL.inlined_request_to(route, self)
     }
 }
 
@@ -200,7 +202,7 @@ impl Layout for KeepAlive {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::OUTPUTS.put(self.outputs, payload)
     }
 }
@@ -217,6 +219,7 @@ pub struct Drift {
     pub turns_rpm: i16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Drift {
     /// The signal `drift`, to read or write it alone, or to ask for its limits.
     pub const DRIFT: Signal<i32, f64> = Signal::new("drift", Place::bytes(3, 1)).unit("V").scale(1, 1024);
@@ -230,9 +233,9 @@ impl Drift {
     /// Builds the request [`ask`](ASK_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn ask(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::ASK.request_to(route, &())
+        Self::ASK.inlined_request_to(route, &())
     }
 }
 
@@ -242,7 +245,7 @@ impl Layout for Drift {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::DRIFT.encode(self.drift_v, payload)?;
         Self::TURNS.put(self.turns_rpm, payload)
     }

@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Heater(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Heater(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Heater(number), Who::One) => {
@@ -152,6 +153,7 @@ pub struct Version {
     pub value: Text<6>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Version {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(0, 5));
@@ -163,9 +165,9 @@ impl Version {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -175,7 +177,7 @@ impl Layout for Version {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -192,6 +194,7 @@ pub struct Label {
     pub code: Bytes<3>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Label {
     /// The signal `family`, to read or write it alone, or to ask for its limits.
     pub const FAMILY: Signal<Text<4, 0x20>> = Signal::new("family", Place::bytes(0, 3));
@@ -205,9 +208,9 @@ impl Label {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -217,7 +220,7 @@ impl Layout for Label {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::FAMILY.put(self.family, payload)?;
         Self::CODE.put(self.code, payload)
     }

@@ -79,17 +79,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Heater(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Heater(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
@@ -100,7 +101,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Heater(number), Who::One) => {
@@ -169,6 +170,7 @@ pub struct Temperature {
     pub value_c: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Temperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("°C").scale(1, 10);
@@ -180,9 +182,9 @@ impl Temperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -192,7 +194,7 @@ impl Layout for Temperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
     }
 }
@@ -203,6 +205,7 @@ impl Layout for Temperature {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Alive;
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Alive {
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("alive", FRAME.id(Identifier::COMMAND, 0x02)).length(4);
@@ -210,9 +213,9 @@ impl Alive {
     /// Builds the request [`tell`](TELL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tell(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TELL.request_to(route, &())
+        Self::TELL.inlined_request_to(route, &())
     }
 }
 

@@ -107,10 +107,11 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Peer => 0,
@@ -118,7 +119,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Peer => IdFilter::ANY.id(Identifier::TARGET, 0xF4).id(Identifier::SOURCE, 0x56),
@@ -126,7 +127,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Peer, Who::One) => IdFilter::ANY.id(Identifier::TARGET, 0x56).id(Identifier::SOURCE, 0xF4),
@@ -297,7 +298,7 @@ impl Layout for CellsFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
         if self.voltage_v[1].is_some() || self.group[1].is_some() {
             payload.end_after(4);
@@ -334,6 +335,7 @@ pub struct TpRequestToSend {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpRequestToSend {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -357,9 +359,9 @@ impl TpRequestToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -374,7 +376,7 @@ impl Layout for TpRequestToSend {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::MOST.put(self.most, payload)?;
@@ -397,6 +399,7 @@ pub struct TpClearToSend {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpClearToSend {
     /// The signal `packets`, to read or write it alone, or to ask for its limits.
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(1));
@@ -420,9 +423,9 @@ impl TpClearToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -433,7 +436,7 @@ impl Layout for TpClearToSend {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PACKETS.put(self.packets, payload)?;
         Self::NEXT.put(self.next, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -453,6 +456,7 @@ pub struct TpEndOfMessage {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpEndOfMessage {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -476,9 +480,9 @@ impl TpEndOfMessage {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -489,7 +493,7 @@ impl Layout for TpEndOfMessage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -509,6 +513,7 @@ pub struct TpBroadcast {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpBroadcast {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -532,9 +537,9 @@ impl TpBroadcast {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -545,7 +550,7 @@ impl Layout for TpBroadcast {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -563,6 +568,7 @@ pub struct TpAbort {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpAbort {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(1));
@@ -584,9 +590,9 @@ impl TpAbort {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -596,7 +602,7 @@ impl Layout for TpAbort {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::REASON.put(self.reason, payload)?;
         Self::GROUP.put(self.group, payload)
     }
@@ -613,6 +619,7 @@ pub struct TpData {
     pub data: Bytes<7>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpData {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0)).limits(1, 255);
@@ -632,9 +639,9 @@ impl TpData {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -644,7 +651,7 @@ impl Layout for TpData {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
         Self::DATA.put(self.data, payload)
     }

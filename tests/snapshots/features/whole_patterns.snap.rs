@@ -67,24 +67,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::All => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::All => IdFilter::ANY,
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::All, Who::One) => IdFilter::ANY,
@@ -130,6 +131,7 @@ pub struct Wanted {
     pub current_a: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Wanted {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(1, 0)).unit("A").limits(0, 200);
@@ -141,9 +143,9 @@ impl Wanted {
     /// Builds the request [`demand`](DEMAND_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn demand(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::DEMAND.request_to(route, self)
+        Self::DEMAND.inlined_request_to(route, self)
     }
 }
 
@@ -153,7 +155,7 @@ impl Layout for Wanted {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_a, payload)
     }
 }
@@ -182,7 +184,7 @@ impl Layout for Limits {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
     }
 }
@@ -197,6 +199,7 @@ pub struct Cycles {
     pub count: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cycles {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u16> = Signal::new("count", Place::bytes(2, 1));
@@ -208,9 +211,9 @@ impl Cycles {
     /// Builds the request [`query`](QUERY_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn query(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::QUERY.request_to(route, &())
+        Self::QUERY.inlined_request_to(route, &())
     }
 }
 
@@ -220,7 +223,7 @@ impl Layout for Cycles {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
     }
 }

@@ -117,17 +117,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Battery(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Battery(number) => IdFilter::ANY
@@ -136,7 +137,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Battery(number), Who::One) => IdFilter::ANY
@@ -834,6 +835,7 @@ pub struct PackValues {
     pub state_of_charge_percent: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PackValues {
     /// The signal `cumulative_voltage`, to read or write it alone, or to ask for its limits.
     pub const CUMULATIVE_VOLTAGE: Signal<u16, f64> =
@@ -855,9 +857,9 @@ impl PackValues {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -873,7 +875,7 @@ impl Layout for PackValues {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CUMULATIVE_VOLTAGE.encode(self.cumulative_voltage_v, payload)?;
         Self::GATHERED_VOLTAGE.encode(self.gathered_voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)?;
@@ -909,6 +911,7 @@ pub struct CellVoltageExtremes {
     pub minimum_cell: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CellVoltageExtremes {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16, f64> =
@@ -928,9 +931,9 @@ impl CellVoltageExtremes {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -946,7 +949,7 @@ impl Layout for CellVoltageExtremes {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
         Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
         Self::MINIMUM_VOLTAGE.encode(self.minimum_voltage_v, payload)?;
@@ -988,6 +991,7 @@ pub struct TemperatureExtremes {
     pub minimum_cell: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TemperatureExtremes {
     /// The signal `maximum_temperature`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_TEMPERATURE: Signal<u8, f64> =
@@ -1007,9 +1011,9 @@ impl TemperatureExtremes {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1025,7 +1029,7 @@ impl Layout for TemperatureExtremes {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_TEMPERATURE.encode(self.maximum_temperature_c, payload)?;
         Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
         Self::MINIMUM_TEMPERATURE.encode(self.minimum_temperature_c, payload)?;
@@ -1067,6 +1071,7 @@ pub struct ChargeState {
     pub remaining_capacity_ah: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ChargeState {
     /// The signal `state`, to read or write it alone, or to ask for its limits.
     pub const STATE: Signal<OperatingState> = Signal::new("state", Place::byte(0));
@@ -1087,9 +1092,9 @@ impl ChargeState {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1106,7 +1111,7 @@ impl Layout for ChargeState {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE.put(self.state, payload)?;
         Self::CHARGE_MOS.put(self.charge_mos, payload)?;
         Self::DISCHARGE_MOS.put(self.discharge_mos, payload)?;
@@ -1136,6 +1141,7 @@ pub struct StatusInformation {
     pub inputs_outputs: InputsOutputs,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl StatusInformation {
     /// The signal `cell_count`, to read or write it alone, or to ask for its limits.
     pub const CELL_COUNT: Signal<u8> = Signal::new("cell_count", Place::byte(0));
@@ -1155,9 +1161,9 @@ impl StatusInformation {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1174,7 +1180,7 @@ impl Layout for StatusInformation {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CELL_COUNT.put(self.cell_count, payload)?;
         Self::TEMPERATURE_COUNT.put(self.temperature_count, payload)?;
         Self::CHARGER.put(self.charger, payload)?;
@@ -1211,6 +1217,7 @@ pub struct CellVoltages {
     pub voltage_v: [f64; 3],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CellVoltages {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 16).specials(&[(255, "invalid")]);
@@ -1230,9 +1237,9 @@ impl CellVoltages {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1245,7 +1252,7 @@ impl Layout for CellVoltages {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::VOLTAGE_1.encode(self.voltage_v[0], payload)?;
         Self::VOLTAGE_2.encode(self.voltage_v[1], payload)?;
@@ -1288,6 +1295,7 @@ pub struct Temperatures {
     pub temperature_c: [f64; 7],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Temperatures {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 3);
@@ -1313,9 +1321,9 @@ impl Temperatures {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1345,7 +1353,7 @@ impl Layout for Temperatures {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::TEMPERATURE_1.encode(self.temperature_c[0], payload)?;
         Self::TEMPERATURE_2.encode(self.temperature_c[1], payload)?;
@@ -1367,6 +1375,7 @@ pub struct BalanceState {
     pub balance: Balance,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl BalanceState {
     /// The signal `balance`, to read or write it alone, or to ask for its limits.
     pub const BALANCE: Signal<Balance> = Signal::new("balance", Place::bytes(5, 0));
@@ -1378,9 +1387,9 @@ impl BalanceState {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1390,7 +1399,7 @@ impl Layout for BalanceState {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::BALANCE.put(self.balance, payload)
     }
 }
@@ -1410,6 +1419,7 @@ pub struct FailureStatus {
     pub fault_code: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FailureStatus {
     /// The signal `failures`, to read or write it alone, or to ask for its limits.
     pub const FAILURES: Signal<Failures> = Signal::new("failures", Place::bytes(6, 0));
@@ -1423,9 +1433,9 @@ impl FailureStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1436,7 +1446,7 @@ impl Layout for FailureStatus {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::FAILURES.put(self.failures, payload)?;
         Self::FAULT_CODE.put(self.fault_code, payload)
     }

@@ -142,10 +142,11 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Peer => 0,
@@ -153,7 +154,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Peer => IdFilter::ANY
@@ -167,7 +168,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Peer, Who::One) => IdFilter::ANY
@@ -1705,6 +1706,7 @@ pub struct Chm {
     pub version_major: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Chm {
     /// The signal `version_minor`, to read or write it alone, or to ask for its limits.
     pub const VERSION_MINOR: Signal<u8> = Signal::new("version_minor", Place::byte(0));
@@ -1718,9 +1720,9 @@ impl Chm {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -1731,7 +1733,7 @@ impl Layout for Chm {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION_MINOR.put(self.version_minor, payload)?;
         Self::VERSION_MAJOR.put(self.version_major, payload)
     }
@@ -1768,7 +1770,7 @@ impl Layout for Bhm {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)
     }
 }
@@ -1800,6 +1802,7 @@ pub struct Crm {
     pub area_code: Text<3, 0xFF>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Crm {
     /// The signal `result`, to read or write it alone, or to ask for its limits.
     pub const RESULT: Signal<Recognition> = Signal::new("result", Place::byte(0));
@@ -1815,9 +1818,9 @@ impl Crm {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -1831,7 +1834,7 @@ impl Layout for Crm {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::RESULT.put(self.result, payload)?;
         Self::CHARGER_NUMBER.put(self.charger_number, payload)?;
         Self::AREA_CODE.put(self.area_code, payload)
@@ -2258,6 +2261,7 @@ pub struct Cts {
     pub year: Option<Bcd<u16>>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cts {
     /// The signal `second`, to read or write it alone, or to ask for its limits.
     pub const SECOND: Signal<Bcd<u8>> =
@@ -2283,9 +2287,9 @@ impl Cts {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -2302,7 +2306,7 @@ impl Layout for Cts {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SECOND.put_some(self.second, payload)?;
         Self::MINUTE.put_some(self.minute, payload)?;
         Self::HOUR.put_some(self.hour, payload)?;
@@ -2346,6 +2350,7 @@ pub struct Cml {
     pub minimum_current_a: Option<f64>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cml {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16, f64> = Signal::new("maximum_voltage", Place::bytes(1, 0))
@@ -2381,9 +2386,9 @@ impl Cml {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -2399,7 +2404,7 @@ impl Layout for Cml {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)?;
         Self::MINIMUM_VOLTAGE.encode_some(self.minimum_voltage_v, payload)?;
         Self::MAXIMUM_CURRENT.encode_some(self.maximum_current_a, payload)?;
@@ -2436,7 +2441,7 @@ impl Layout for Bro {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)
     }
 }
@@ -2452,6 +2457,7 @@ pub struct Cro {
     pub readiness: Readiness,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cro {
     /// The signal `readiness`, to read or write it alone, or to ask for its limits.
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(0));
@@ -2466,9 +2472,9 @@ impl Cro {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -2478,7 +2484,7 @@ impl Layout for Cro {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)
     }
 }
@@ -2536,7 +2542,7 @@ impl Layout for Bcl {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
         Self::CURRENT.encode_some(self.current_a, payload)?;
         Self::MODE.put(self.mode, payload)
@@ -2696,6 +2702,7 @@ pub struct Ccs {
     pub byte_8: Option<Bytes<1>>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Ccs {
     /// The signal `output_voltage`, to read or write it alone, or to ask for its limits.
     pub const OUTPUT_VOLTAGE: Signal<u16, f64> = Signal::new("output_voltage", Place::bytes(1, 0))
@@ -2731,9 +2738,9 @@ impl Ccs {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -2756,7 +2763,7 @@ impl Layout for Ccs {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(7);
         if self.byte_8.is_some() {
             payload.end_after(8);
@@ -2921,7 +2928,7 @@ impl Layout for Bsm {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HIGHEST_CELL.encode(self.highest_cell, payload)?;
         Self::HIGHEST_TEMPERATURE.encode_some(self.highest_temperature_c, payload)?;
         Self::HIGHEST_TEMPERATURE_POINT.encode_some(self.highest_temperature_point, payload)?;
@@ -3086,7 +3093,7 @@ impl Layout for BmvFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
         if self.cell_voltage_v[1].is_some() || self.cell_group[1].is_some() {
             payload.end_after(4);
@@ -3262,7 +3269,7 @@ impl Layout for BmtFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
         if self.temperature_c[1].is_some() || payload.had(2) {
             payload.end_after(2);
@@ -3400,7 +3407,7 @@ impl Layout for BspFrame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
         if self.reserved[1].is_some() {
             payload.end_after(2);
@@ -3585,7 +3592,7 @@ impl Layout for Bst {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TARGET_SOC.put(self.target_soc, payload)?;
         Self::TOTAL_VOLTAGE.put(self.total_voltage, payload)?;
         Self::CELL_VOLTAGE.put(self.cell_voltage, payload)?;
@@ -3673,6 +3680,7 @@ pub struct Cst {
     pub voltage: AbnormalState,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cst {
     /// The signal `condition_reached`, to read or write it alone, or to ask for its limits.
     pub const CONDITION_REACHED: Signal<StopState> = Signal::new("condition_reached", Place::byte(0).bits(1, 0));
@@ -3711,9 +3719,9 @@ impl Cst {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -3749,7 +3757,7 @@ impl Layout for Cst {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CONDITION_REACHED.put(self.condition_reached, payload)?;
         Self::MANUAL_STOP.put(self.manual_stop, payload)?;
         Self::FAULT_STOP.put(self.fault_stop, payload)?;
@@ -3854,7 +3862,7 @@ impl Layout for Bsd {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE_OF_CHARGE.put_some(self.state_of_charge_percent, payload)?;
         Self::LOWEST_CELL_VOLTAGE.encode_some(self.lowest_cell_voltage_v, payload)?;
         Self::HIGHEST_CELL_VOLTAGE.encode_some(self.highest_cell_voltage_v, payload)?;
@@ -3886,6 +3894,7 @@ pub struct Csd {
     pub charger_number: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Csd {
     /// The signal `charging_time`, to read or write it alone, or to ask for its limits.
     pub const CHARGING_TIME: Signal<u16> = Signal::new("charging_time", Place::bytes(1, 0))
@@ -3910,9 +3919,9 @@ impl Csd {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -3926,7 +3935,7 @@ impl Layout for Csd {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
         Self::OUTPUT_ENERGY.encode_some(self.output_energy_wh, payload)?;
         Self::CHARGER_NUMBER.put(self.charger_number, payload)
@@ -4021,7 +4030,7 @@ impl Layout for Bem {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CRM_NOT_RECOGNISED.put(self.crm_not_recognised, payload)?;
         Self::CRM_RECOGNISED.put(self.crm_recognised, payload)?;
         Self::CTS_AND_CML.put(self.cts_and_cml, payload)?;
@@ -4071,6 +4080,7 @@ pub struct Cem {
     pub bsd: TimeoutState,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cem {
     /// The signal `brm`, to read or write it alone, or to ask for its limits.
     pub const BRM: Signal<TimeoutState> = Signal::new("brm", Place::byte(0).bits(1, 0));
@@ -4097,9 +4107,9 @@ impl Cem {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_CYCLE.request_to(route, self)
+        Self::CHARGER_CYCLE.inlined_request_to(route, self)
     }
 }
 
@@ -4117,7 +4127,7 @@ impl Layout for Cem {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::BRM.put(self.brm, payload)?;
         Self::BCP.put(self.bcp, payload)?;
         Self::BRO.put(self.bro, payload)?;
@@ -4253,6 +4263,7 @@ pub struct Dm1Frame {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm1Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
@@ -4284,9 +4295,9 @@ impl Dm1Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Dm1::CHARGER_EVENT.request_to(route, self)
+        Dm1::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4325,7 +4336,7 @@ impl Layout for Dm1Frame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
         if self.code_spn_low[1].is_some()
             || self.code_fmi[1].is_some()
@@ -4473,6 +4484,7 @@ pub struct Dm2Frame {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm2Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
@@ -4504,9 +4516,9 @@ impl Dm2Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Dm2::CHARGER_EVENT.request_to(route, self)
+        Dm2::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4545,7 +4557,7 @@ impl Layout for Dm2Frame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
         if self.code_spn_low[1].is_some()
             || self.code_fmi[1].is_some()
@@ -4580,6 +4592,7 @@ pub struct Dm3 {
     pub value: Bytes<2>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<2>> = Signal::new("value", Place::bytes(0, 1));
@@ -4593,9 +4606,9 @@ impl Dm3 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Self::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4605,7 +4618,7 @@ impl Layout for Dm3 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -4620,6 +4633,7 @@ impl Layout for Dm3 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm4;
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm4 {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
@@ -4629,9 +4643,9 @@ impl Dm4 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, &())
+        Self::CHARGER_EVENT.inlined_request_to(route, &())
     }
 }
 
@@ -4642,6 +4656,7 @@ impl Dm4 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm5;
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm5 {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
@@ -4651,9 +4666,9 @@ impl Dm5 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, &())
+        Self::CHARGER_EVENT.inlined_request_to(route, &())
     }
 }
 
@@ -4721,6 +4736,7 @@ pub struct Dm6Frame {
     pub data: [Option<Bytes<1>>; 8],
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm6Frame {
     /// The signal `data_1`, to read or write it alone, or to ask for its limits.
     pub const DATA_1: Signal<Bytes<1>> = Signal::new("data_1", Place::byte(0));
@@ -4744,9 +4760,9 @@ impl Dm6Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Dm6::CHARGER_EVENT.request_to(route, self)
+        Dm6::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4782,7 +4798,7 @@ impl Layout for Dm6Frame {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
         if self.data[1].is_some() {
             payload.end_after(2);
@@ -4826,6 +4842,7 @@ pub struct Rqst {
     pub pgn: Pgn,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Rqst {
     /// The signal `pgn`, to read or write it alone, or to ask for its limits.
     pub const PGN: Signal<Pgn> = Signal::new("pgn", Place::bytes(2, 0));
@@ -4839,9 +4856,9 @@ impl Rqst {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Self::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4851,7 +4868,7 @@ impl Layout for Rqst {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PGN.put(self.pgn, payload)
     }
 }
@@ -4869,6 +4886,7 @@ pub struct Ackm {
     pub pgn: Pgn,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Ackm {
     /// The signal `control`, to read or write it alone, or to ask for its limits.
     pub const CONTROL: Signal<Acknowledgment> = Signal::new("control", Place::byte(0));
@@ -4891,9 +4909,9 @@ impl Ackm {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Self::CHARGER_EVENT.inlined_request_to(route, self)
     }
 }
 
@@ -4907,7 +4925,7 @@ impl Layout for Ackm {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CONTROL.put(self.control, payload)?;
         Self::GROUP_FUNCTION.put_some(self.group_function, payload)?;
         Self::PGN.put(self.pgn, payload)
@@ -4929,6 +4947,7 @@ pub struct TpRequestToSend {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpRequestToSend {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -4952,9 +4971,9 @@ impl TpRequestToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -4969,7 +4988,7 @@ impl Layout for TpRequestToSend {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::MOST.put(self.most, payload)?;
@@ -4993,6 +5012,7 @@ pub struct TpClearToSend {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpClearToSend {
     /// The signal `packets`, to read or write it alone, or to ask for its limits.
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(1));
@@ -5016,9 +5036,9 @@ impl TpClearToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -5029,7 +5049,7 @@ impl Layout for TpClearToSend {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PACKETS.put(self.packets, payload)?;
         Self::NEXT.put(self.next, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -5049,6 +5069,7 @@ pub struct TpEndOfMessage {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpEndOfMessage {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -5072,9 +5093,9 @@ impl TpEndOfMessage {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -5085,7 +5106,7 @@ impl Layout for TpEndOfMessage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -5109,6 +5130,7 @@ pub struct TpBroadcast {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpBroadcast {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -5132,9 +5154,9 @@ impl TpBroadcast {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -5145,7 +5167,7 @@ impl Layout for TpBroadcast {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
         Self::PACKETS.put(self.packets, payload)?;
         Self::GROUP.put(self.group, payload)
@@ -5164,6 +5186,7 @@ pub struct TpAbort {
     pub group: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpAbort {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(1));
@@ -5185,9 +5208,9 @@ impl TpAbort {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -5197,7 +5220,7 @@ impl Layout for TpAbort {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::REASON.put(self.reason, payload)?;
         Self::GROUP.put(self.group, payload)
     }
@@ -5214,6 +5237,7 @@ pub struct TpData {
     pub data: Bytes<7>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpData {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0)).limits(1, 255);
@@ -5233,9 +5257,9 @@ impl TpData {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TP_OF_CONTROLLER.request_to(route, self)
+        Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
     }
 }
 
@@ -5245,7 +5269,7 @@ impl Layout for TpData {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
         Self::DATA.put(self.data, payload)
     }

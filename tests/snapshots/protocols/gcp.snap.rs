@@ -150,10 +150,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -163,7 +164,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Module(number) => IdFilter::ANY
@@ -186,7 +187,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Module(number), Who::One) => IdFilter::ANY
@@ -1044,6 +1045,7 @@ pub struct SystemOutput {
     pub current_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
@@ -1057,9 +1059,9 @@ impl SystemOutput {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TOTAL.request_to(route, &())
+        Self::READ_TOTAL.inlined_request_to(route, &())
     }
 }
 
@@ -1069,7 +1071,7 @@ impl Layout for SystemOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
         Self::CURRENT.put(self.current_a, payload)
     }
@@ -1088,6 +1090,7 @@ pub struct ModuleCount {
     pub count: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
@@ -1099,9 +1102,9 @@ impl ModuleCount {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TOTAL.request_to(route, &())
+        Self::READ_TOTAL.inlined_request_to(route, &())
     }
 }
 
@@ -1111,7 +1114,7 @@ impl Layout for ModuleCount {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
     }
 }
@@ -1132,6 +1135,7 @@ pub struct ModuleOutput {
     pub current_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
@@ -1145,9 +1149,9 @@ impl ModuleOutput {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1157,7 +1161,7 @@ impl Layout for ModuleOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
         Self::CURRENT.put(self.current_a, payload)
     }
@@ -1191,6 +1195,7 @@ pub struct ModuleStatus {
     pub status_0: Status0,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleStatus {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
@@ -1210,9 +1215,9 @@ impl ModuleStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1228,7 +1233,7 @@ impl Layout for ModuleStatus {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)?;
         Self::TEMPERATURE.put(self.temperature_c, payload)?;
         Self::STATUS_2.put(self.status_2, payload)?;
@@ -1265,6 +1270,7 @@ pub struct InputVoltage {
     pub ca_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `ab`, to read or write it alone, or to ask for its limits.
     pub const AB: Signal<u16, f64> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1284,9 +1290,9 @@ impl InputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1297,7 +1303,7 @@ impl Layout for InputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::AB.encode(self.ab_v, payload)?;
         Self::BC.encode(self.bc_v, payload)?;
         Self::CA.encode(self.ca_v, payload)
@@ -1334,6 +1340,7 @@ pub struct InputVoltageDc {
     pub minus_pe_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltageDc {
     /// The signal `plus_minus`, to read or write it alone, or to ask for its limits.
     pub const PLUS_MINUS: Signal<u16, f64> = Signal::new("plus_minus", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1351,9 +1358,9 @@ impl InputVoltageDc {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1367,7 +1374,7 @@ impl Layout for InputVoltageDc {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PLUS_MINUS.encode(self.plus_minus_v, payload)?;
         Self::PLUS_PE.encode(self.plus_pe_v, payload)?;
         Self::MINUS_PE.encode(self.minus_pe_v, payload)
@@ -1396,6 +1403,7 @@ pub struct ExternalVoltage {
     pub allowed_current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ExternalVoltage {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1410,9 +1418,9 @@ impl ExternalVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1423,7 +1431,7 @@ impl Layout for ExternalVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
     }
@@ -1444,6 +1452,7 @@ pub struct LimitInputCurrent {
     pub current_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl LimitInputCurrent {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
@@ -1465,19 +1474,20 @@ impl LimitInputCurrent {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET_UNANSWERED.request_to(route, self)
+        Self::SET_UNANSWERED.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<LimitInputCurrent> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        LimitInputCurrent::SET_UNANSWERED.request_within(self.model, route, &self.values)
+        LimitInputCurrent::SET_UNANSWERED.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -1487,7 +1497,7 @@ impl Layout for LimitInputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_a, payload)
     }
 }
@@ -1529,6 +1539,7 @@ pub struct SetOperatingMode {
     pub mode: OperatingMode,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOperatingMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<OperatingMode> = Signal::new("mode", Place::byte(7));
@@ -1551,19 +1562,20 @@ impl SetOperatingMode {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET_UNANSWERED.request_to(route, self)
+        Self::SET_UNANSWERED.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetOperatingMode> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        SetOperatingMode::SET_UNANSWERED.request_within(self.model, route, &self.values)
+        SetOperatingMode::SET_UNANSWERED.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -1573,7 +1585,7 @@ impl Layout for SetOperatingMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)
     }
 }
@@ -1617,6 +1629,7 @@ pub struct SetWalkIn {
     pub interval_s: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
@@ -1636,9 +1649,9 @@ impl SetWalkIn {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1649,7 +1662,7 @@ impl Layout for SetWalkIn {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::WALK_IN.put(self.walk_in, payload)?;
         Self::INTERVAL.encode(self.interval_s, payload)
     }
@@ -1673,7 +1686,7 @@ impl Layout for SetWalkInReply {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         SetWalkIn::WALK_IN.put(self.walk_in, payload)
     }
 }
@@ -1703,6 +1716,7 @@ pub struct SetLed {
     pub led: Led,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
@@ -1714,9 +1728,9 @@ impl SetLed {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1726,7 +1740,7 @@ impl Layout for SetLed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LED.put(self.led, payload)
     }
 }
@@ -1749,6 +1763,7 @@ pub struct SwitchModules {
     pub power: Power,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
@@ -1760,9 +1775,9 @@ impl SwitchModules {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1772,7 +1787,7 @@ impl Layout for SwitchModules {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)
     }
 }
@@ -1797,6 +1812,7 @@ pub struct SetTotalOutput {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotalOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
@@ -1810,9 +1826,9 @@ impl SetTotalOutput {
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET_TOTAL.request_to(route, self)
+        Self::SET_TOTAL.inlined_request_to(route, self)
     }
 }
 
@@ -1823,7 +1839,7 @@ impl Layout for SetTotalOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -1848,6 +1864,7 @@ pub struct SetModuleOutput {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
@@ -1861,9 +1878,9 @@ impl SetModuleOutput {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1874,7 +1891,7 @@ impl Layout for SetModuleOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }

@@ -167,10 +167,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Psu(_) => 0,
@@ -178,7 +179,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Psu(number) => IdFilter::ANY
@@ -192,7 +193,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Psu(number), Who::One) => IdFilter::ANY
@@ -1212,6 +1213,7 @@ pub struct MeasuredData {
     pub alarms: Option<Alarms>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MeasuredData {
     /// The access `read_all`, for filters and blank frames of it.
     pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("measured_data", FRAME.id(Identifier::COMMAND, 0x40)).answers(&[
@@ -1227,9 +1229,9 @@ impl MeasuredData {
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::READ_ALL.request_to(route, &())
+        Self::READ_ALL.inlined_request_to(route, &())
     }
 }
 
@@ -1310,6 +1312,7 @@ pub struct OperatingHours {
     pub value_h: i32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OperatingHours {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("h");
@@ -1325,9 +1328,9 @@ impl OperatingHours {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1337,7 +1340,7 @@ impl Layout for OperatingHours {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_h, payload)
     }
 }
@@ -1356,6 +1359,7 @@ pub struct InputPower {
     pub value_w: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
@@ -1371,9 +1375,9 @@ impl InputPower {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1383,7 +1387,7 @@ impl Layout for InputPower {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_w, payload)
     }
 }
@@ -1399,6 +1403,7 @@ pub struct InputFrequency {
     pub value_hz: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
@@ -1414,9 +1419,9 @@ impl InputFrequency {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1426,7 +1431,7 @@ impl Layout for InputFrequency {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_hz, payload)
     }
 }
@@ -1442,6 +1447,7 @@ pub struct InputCurrent {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
@@ -1457,9 +1463,9 @@ impl InputCurrent {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1469,7 +1475,7 @@ impl Layout for InputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1485,6 +1491,7 @@ pub struct OutputPower {
     pub value_w: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
@@ -1500,9 +1507,9 @@ impl OutputPower {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1512,7 +1519,7 @@ impl Layout for OutputPower {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_w, payload)
     }
 }
@@ -1528,6 +1535,7 @@ pub struct Efficiency {
     pub value: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Efficiency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024);
@@ -1543,9 +1551,9 @@ impl Efficiency {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1555,7 +1563,7 @@ impl Layout for Efficiency {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value, payload)
     }
 }
@@ -1572,6 +1580,7 @@ pub struct OutputVoltage {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
@@ -1587,9 +1596,9 @@ impl OutputVoltage {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1599,7 +1608,7 @@ impl Layout for OutputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -1623,18 +1632,31 @@ pub struct MaximumOutputCurrent {
     pub value_raw: i32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MaximumOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).by_model();
 
     /// Returns the signal `value` of a device model; `None` of a model without a scale.
     #[must_use]
-    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+    pub const fn value_on(model: Model) -> Option<&'static Signal<i32, f64>> {
         match model {
-            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
-            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30)),
-            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            Model::R4830s1 | Model::R4850g6 => {
+                const SIGNAL: Signal<i32, f64> = MaximumOutputCurrent::VALUE.on_model().unit("%").scale(2, 25);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2 => {
+                const SIGNAL: Signal<i32, f64> = MaximumOutputCurrent::VALUE.on_model().unit("A").scale(1, 30);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2_20 => {
+                const SIGNAL: Signal<i32, f64> = MaximumOutputCurrent::VALUE.on_model().unit("A").scale(1, 20);
+                Some(&SIGNAL)
+            }
+            Model::R4875g1 => {
+                const SIGNAL: Signal<i32, f64> = MaximumOutputCurrent::VALUE.on_model().unit("A").scale(1, 15);
+                Some(&SIGNAL)
+            }
             _ => None,
         }
     }
@@ -1651,9 +1673,9 @@ impl MaximumOutputCurrent {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 
     /// Returns the number that `value` is on a device model; `None` if it is none.
@@ -1666,8 +1688,7 @@ impl MaximumOutputCurrent {
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal =
-            Self::value_on(model).ok_or(Error::Meaning { message: "maximum_output_current", signal: "value" })?;
+        let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("maximum_output_current"))?;
         self.value_raw = signal.raw_of(value, "maximum_output_current")?;
         Ok(())
     }
@@ -1679,7 +1700,7 @@ impl Layout for MaximumOutputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
     }
 }
@@ -1698,6 +1719,7 @@ pub struct InputVoltage {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
@@ -1713,9 +1735,9 @@ impl InputVoltage {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1725,7 +1747,7 @@ impl Layout for InputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -1741,6 +1763,7 @@ pub struct OutputTemperature {
     pub value_c: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
@@ -1756,9 +1779,9 @@ impl OutputTemperature {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1768,7 +1791,7 @@ impl Layout for OutputTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
     }
 }
@@ -1789,6 +1812,7 @@ pub struct InputTemperature {
     pub value_c: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
@@ -1804,9 +1828,9 @@ impl InputTemperature {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1816,7 +1840,7 @@ impl Layout for InputTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
     }
 }
@@ -1836,6 +1860,7 @@ pub struct OutputCurrent1 {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
@@ -1851,9 +1876,9 @@ impl OutputCurrent1 {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1863,7 +1888,7 @@ impl Layout for OutputCurrent1 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1883,6 +1908,7 @@ pub struct OutputCurrent2 {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
@@ -1898,9 +1924,9 @@ impl OutputCurrent2 {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1910,7 +1936,7 @@ impl Layout for OutputCurrent2 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1933,6 +1959,7 @@ pub struct Alarms {
     pub value: AlarmBits,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Alarms {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AlarmBits> = Signal::new("value", Place::bytes(2, 7));
@@ -1948,9 +1975,9 @@ impl Alarms {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -1960,7 +1987,7 @@ impl Layout for Alarms {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1982,6 +2009,7 @@ pub struct FanState {
     pub speed_rpm: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanState {
     /// The signal `minimum_duty`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_DUTY: Signal<u16, f64> = Signal::new("minimum_duty", Place::bytes(2, 3)).unit("%").scale(1, 256);
@@ -1997,9 +2025,9 @@ impl FanState {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -2013,7 +2041,7 @@ impl Layout for FanState {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MINIMUM_DUTY.encode(self.minimum_duty_percent, payload)?;
         Self::TARGET_DUTY.encode(self.target_duty_percent, payload)?;
         Self::SPEED.put(self.speed_rpm, payload)
@@ -2041,6 +2069,7 @@ pub struct Information {
     pub hardware_address: Option<HardwareAddress>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Information {
     /// The access `read_all`, for filters and blank frames of it.
     pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("information", FRAME.id(Identifier::COMMAND, 0x50));
@@ -2048,9 +2077,9 @@ impl Information {
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::READ_ALL.request_to(route, &())
+        Self::READ_ALL.inlined_request_to(route, &())
     }
 }
 
@@ -2118,7 +2147,7 @@ impl Layout for CharacteristicData {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2152,7 +2181,7 @@ impl Layout for SerialNumber {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2185,7 +2214,7 @@ impl Layout for Barcode1 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2218,7 +2247,7 @@ impl Layout for Barcode2 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2261,7 +2290,7 @@ impl Layout for Versions {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HARDWARE.put(self.hardware, payload)?;
         Self::DCDC.put(self.dcdc, payload)?;
         Self::PFC.put(self.pfc, payload)
@@ -2299,7 +2328,7 @@ impl Layout for HardwareAddress {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2321,6 +2350,7 @@ pub struct ELabel {
     pub text: Text<1200>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ELabel {
     /// The signal `text`, to read or write it alone, or to ask for its limits.
     pub const TEXT: LongText<Text<1200>> = LongText::new(0, Signal::new("text", Place::byte(0))).at_least(0);
@@ -2328,9 +2358,9 @@ impl ELabel {
     /// Builds the request [`read_text`](READ_TEXT_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<ELabelPart>, Error> {
-        ELabelPart::READ_TEXT.request_to(route, &())
+        ELabelPart::READ_TEXT.inlined_request_to(route, &())
     }
 }
 
@@ -2371,7 +2401,7 @@ impl Layout for ELabelPart {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
         Self::DATA.put(self.data, payload)
     }
@@ -2412,6 +2442,7 @@ pub struct OutputVoltageSetting {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltageSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2435,19 +2466,20 @@ impl OutputVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<OutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
-        OutputVoltageSetting::SET.request_within(self.model, route, &self.values)
+        OutputVoltageSetting::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2457,7 +2489,7 @@ impl Layout for OutputVoltageSetting {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -2481,6 +2513,7 @@ pub struct DefaultOutputVoltage {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DefaultOutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2504,19 +2537,20 @@ impl DefaultOutputVoltage {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<DefaultOutputVoltage> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
-        DefaultOutputVoltage::SET.request_within(self.model, route, &self.values)
+        DefaultOutputVoltage::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2526,7 +2560,7 @@ impl Layout for DefaultOutputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -2548,6 +2582,7 @@ pub struct OvervoltageProtection {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OvervoltageProtection {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2571,19 +2606,20 @@ impl OvervoltageProtection {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<OvervoltageProtection> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtection>, Error> {
-        OvervoltageProtection::SET.request_within(self.model, route, &self.values)
+        OvervoltageProtection::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2593,7 +2629,7 @@ impl Layout for OvervoltageProtection {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -2624,6 +2660,7 @@ pub struct CurrentLimit {
     pub value_raw: i32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
@@ -2631,12 +2668,26 @@ impl CurrentLimit {
 
     /// Returns the signal `value` of a device model; `None` of a model without a scale.
     #[must_use]
-    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+    pub const fn value_on(model: Model) -> Option<&'static Signal<i32, f64>> {
         match model {
-            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
-            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
-            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            Model::R4830s1 | Model::R4850g6 => {
+                const SIGNAL: Signal<i32, f64> =
+                    CurrentLimit::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2 => {
+                const SIGNAL: Signal<i32, f64> =
+                    CurrentLimit::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2_20 => {
+                const SIGNAL: Signal<i32, f64> = CurrentLimit::VALUE.on_model().unit("A").scale(1, 20);
+                Some(&SIGNAL)
+            }
+            Model::R4875g1 => {
+                const SIGNAL: Signal<i32, f64> = CurrentLimit::VALUE.on_model().unit("A").scale(1, 15);
+                Some(&SIGNAL)
+            }
             _ => None,
         }
     }
@@ -2657,9 +2708,9 @@ impl CurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 
     /// Returns the number that `value` is on a device model; `None` if it is none.
@@ -2672,19 +2723,20 @@ impl CurrentLimit {
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal = Self::value_on(model).ok_or(Error::Meaning { message: "current_limit", signal: "value" })?;
+        let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("current_limit"))?;
         self.value_raw = signal.raw_of(value, "current_limit")?;
         Ok(())
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<CurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<CurrentLimit>, Error> {
-        CurrentLimit::SET.request_within(self.model, route, &self.values)
+        CurrentLimit::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2694,7 +2746,7 @@ impl Layout for CurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
     }
 }
@@ -2725,6 +2777,7 @@ pub struct DefaultCurrentLimit {
     pub value_raw: i32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DefaultCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
@@ -2732,12 +2785,26 @@ impl DefaultCurrentLimit {
 
     /// Returns the signal `value` of a device model; `None` of a model without a scale.
     #[must_use]
-    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+    pub const fn value_on(model: Model) -> Option<&'static Signal<i32, f64>> {
         match model {
-            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
-            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
-            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            Model::R4830s1 | Model::R4850g6 => {
+                const SIGNAL: Signal<i32, f64> =
+                    DefaultCurrentLimit::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2 => {
+                const SIGNAL: Signal<i32, f64> =
+                    DefaultCurrentLimit::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0);
+                Some(&SIGNAL)
+            }
+            Model::R4850g2_20 => {
+                const SIGNAL: Signal<i32, f64> = DefaultCurrentLimit::VALUE.on_model().unit("A").scale(1, 20);
+                Some(&SIGNAL)
+            }
+            Model::R4875g1 => {
+                const SIGNAL: Signal<i32, f64> = DefaultCurrentLimit::VALUE.on_model().unit("A").scale(1, 15);
+                Some(&SIGNAL)
+            }
             _ => None,
         }
     }
@@ -2758,9 +2825,9 @@ impl DefaultCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 
     /// Returns the number that `value` is on a device model; `None` if it is none.
@@ -2773,20 +2840,20 @@ impl DefaultCurrentLimit {
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal =
-            Self::value_on(model).ok_or(Error::Meaning { message: "default_current_limit", signal: "value" })?;
+        let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("default_current_limit"))?;
         self.value_raw = signal.raw_of(value, "default_current_limit")?;
         Ok(())
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<DefaultCurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultCurrentLimit>, Error> {
-        DefaultCurrentLimit::SET.request_within(self.model, route, &self.values)
+        DefaultCurrentLimit::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2796,7 +2863,7 @@ impl Layout for DefaultCurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
     }
 }
@@ -2819,6 +2886,7 @@ pub struct InputCurrentLimit {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputCurrentLimit {
     /// The signal `state`, to read or write it alone, or to ask for its limits.
     pub const STATE: Signal<LimitState> = Signal::new("state", Place::byte(3));
@@ -2832,9 +2900,9 @@ impl InputCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2844,7 +2912,7 @@ impl Layout for InputCurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE.put(self.state, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -2867,6 +2935,7 @@ pub struct FanDuty {
     pub value_percent: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanDuty {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(2, 3))
@@ -2893,19 +2962,20 @@ impl FanDuty {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<FanDuty> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<FanDuty>, Error> {
-        FanDuty::SET.request_within(self.model, route, &self.values)
+        FanDuty::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2915,7 +2985,7 @@ impl Layout for FanDuty {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_percent, payload)
     }
 }
@@ -2929,6 +2999,7 @@ pub struct Standby {
     pub value: SwitchState,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Standby {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<SwitchState> = Signal::new("value", Place::byte(3));
@@ -2940,9 +3011,9 @@ impl Standby {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2952,7 +3023,7 @@ impl Layout for Standby {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2977,6 +3048,7 @@ pub struct FanMode {
     pub value: FanControl,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FanControl> = Signal::new("value", Place::byte(3));
@@ -2990,17 +3062,17 @@ impl FanMode {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::GET.request_to(route, &())
+        Self::GET.inlined_request_to(route, &())
     }
 }
 
@@ -3010,7 +3082,7 @@ impl Layout for FanMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -3051,7 +3123,7 @@ impl Layout for ReadyState {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)?;
         Self::LOAD.encode(self.load_percent, payload)
     }
@@ -3086,7 +3158,7 @@ impl Layout for CommonLoad {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LOAD.encode(self.load_percent, payload)
     }
 }
@@ -3129,7 +3201,7 @@ impl Layout for ActiveState {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ACTIVITY.put(self.activity, payload)?;
         Self::LOAD.encode(self.load_percent, payload)
     }
@@ -3175,7 +3247,7 @@ impl Layout for StartUp10 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
         Self::CONTENT.put(self.content, payload)
     }
@@ -3217,7 +3289,7 @@ impl Layout for StartUp81 {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }

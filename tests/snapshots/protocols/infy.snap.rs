@@ -139,10 +139,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -152,7 +153,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Module(number) => IdFilter::ANY
@@ -176,7 +177,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Module(number), Who::One) => IdFilter::ANY
@@ -1150,6 +1151,7 @@ pub struct SystemOutput {
     pub current_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
@@ -1163,9 +1165,9 @@ impl SystemOutput {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TOTAL.request_to(route, &())
+        Self::READ_TOTAL.inlined_request_to(route, &())
     }
 }
 
@@ -1175,7 +1177,7 @@ impl Layout for SystemOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
         Self::CURRENT.put(self.current_a, payload)
     }
@@ -1191,6 +1193,7 @@ pub struct ModuleCount {
     pub count: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
@@ -1202,9 +1205,9 @@ impl ModuleCount {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TOTAL.request_to(route, &())
+        Self::READ_TOTAL.inlined_request_to(route, &())
     }
 }
 
@@ -1214,7 +1217,7 @@ impl Layout for ModuleCount {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
     }
 }
@@ -1233,6 +1236,7 @@ pub struct ModuleOutput {
     pub current_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
@@ -1246,9 +1250,9 @@ impl ModuleOutput {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1258,7 +1262,7 @@ impl Layout for ModuleOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
         Self::CURRENT.put(self.current_a, payload)
     }
@@ -1287,6 +1291,7 @@ pub struct ModuleStatus {
     pub status_0: Status0,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleStatus {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
@@ -1306,9 +1311,9 @@ impl ModuleStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1324,7 +1329,7 @@ impl Layout for ModuleStatus {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)?;
         Self::TEMPERATURE.put(self.temperature_c, payload)?;
         Self::STATUS_2.put(self.status_2, payload)?;
@@ -1349,6 +1354,7 @@ pub struct InputVoltage {
     pub ca_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `ab`, to read or write it alone, or to ask for its limits.
     pub const AB: Signal<u16, f64> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1364,9 +1370,9 @@ impl InputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1377,7 +1383,7 @@ impl Layout for InputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::AB.encode(self.ab_v, payload)?;
         Self::BC.encode(self.bc_v, payload)?;
         Self::CA.encode(self.ca_v, payload)
@@ -1397,6 +1403,7 @@ pub struct SystemOutputFixed {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutputFixed {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
@@ -1410,9 +1417,9 @@ impl SystemOutputFixed {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TOTAL.request_to(route, &())
+        Self::READ_TOTAL.inlined_request_to(route, &())
     }
 }
 
@@ -1423,7 +1430,7 @@ impl Layout for SystemOutputFixed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -1443,6 +1450,7 @@ pub struct ModuleOutputFixed {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutputFixed {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
@@ -1456,9 +1464,9 @@ impl ModuleOutputFixed {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1469,7 +1477,7 @@ impl Layout for ModuleOutputFixed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -1494,6 +1502,7 @@ pub struct ModuleLimits {
     pub rated_power_w: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleLimits {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new("maximum_voltage", Place::bytes(0, 1)).unit("V");
@@ -1512,9 +1521,9 @@ impl ModuleLimits {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1530,7 +1539,7 @@ impl Layout for ModuleLimits {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.put(self.maximum_voltage_v, payload)?;
         Self::MINIMUM_VOLTAGE.put(self.minimum_voltage_v, payload)?;
         Self::MAXIMUM_CURRENT.encode(self.maximum_current_a, payload)?;
@@ -1554,6 +1563,7 @@ pub struct Barcode {
     pub value: BarcodeValue,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Barcode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<BarcodeValue> = Signal::new("value", Place::bytes(0, 7));
@@ -1565,9 +1575,9 @@ impl Barcode {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1577,7 +1587,7 @@ impl Layout for Barcode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1607,6 +1617,7 @@ pub struct ExternalVoltage {
     pub allowed_current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ExternalVoltage {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1621,9 +1632,9 @@ impl ExternalVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1634,7 +1645,7 @@ impl Layout for ExternalVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
     }
@@ -1653,6 +1664,7 @@ pub struct SetWalkIn {
     pub walk_in: WalkIn,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
@@ -1664,9 +1676,9 @@ impl SetWalkIn {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1676,7 +1688,7 @@ impl Layout for SetWalkIn {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::WALK_IN.put(self.walk_in, payload)
     }
 }
@@ -1692,6 +1704,7 @@ pub struct SetLed {
     pub led: Led,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
@@ -1703,9 +1716,9 @@ impl SetLed {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1715,7 +1728,7 @@ impl Layout for SetLed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LED.put(self.led, payload)
     }
 }
@@ -1738,6 +1751,7 @@ pub struct SetGroup {
     pub group: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(0)).limits(1, 62);
@@ -1749,9 +1763,9 @@ impl SetGroup {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1761,7 +1775,7 @@ impl Layout for SetGroup {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)
     }
 }
@@ -1779,6 +1793,7 @@ pub struct SetSleep {
     pub sleep: Sleep,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetSleep {
     /// The signal `sleep`, to read or write it alone, or to ask for its limits.
     pub const SLEEP: Signal<Sleep> = Signal::new("sleep", Place::byte(0));
@@ -1790,9 +1805,9 @@ impl SetSleep {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1802,7 +1817,7 @@ impl Layout for SetSleep {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SLEEP.put(self.sleep, payload)
     }
 }
@@ -1824,6 +1839,7 @@ pub struct SwitchModules {
     pub power: Power,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
@@ -1840,9 +1856,9 @@ impl SwitchModules {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1852,7 +1868,7 @@ impl Layout for SwitchModules {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)
     }
 }
@@ -1880,6 +1896,7 @@ pub struct SetTotalOutput {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotalOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3))
@@ -1905,19 +1922,20 @@ impl SetTotalOutput {
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET_TOTAL.request_to(route, self)
+        Self::SET_TOTAL.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetTotalOutput> {
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<SetTotalOutput>, Error> {
-        SetTotalOutput::SET_TOTAL.request_within(self.model, route, &self.values)
+        SetTotalOutput::SET_TOTAL.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -1928,7 +1946,7 @@ impl Layout for SetTotalOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -1957,6 +1975,7 @@ pub struct SetModuleOutput {
     pub current_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3))
@@ -1986,19 +2005,20 @@ impl SetModuleOutput {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetModuleOutput> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetModuleOutput>, Error> {
-        SetModuleOutput::SET.request_within(self.model, route, &self.values)
+        SetModuleOutput::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -2009,7 +2029,7 @@ impl Layout for SetModuleOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)
     }
@@ -2035,6 +2055,7 @@ pub struct SetAddressMode {
     pub mode: AddressMode,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAddressMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<AddressMode> = Signal::new("mode", Place::byte(0));
@@ -2046,9 +2067,9 @@ impl SetAddressMode {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2058,7 +2079,7 @@ impl Layout for SetAddressMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)
     }
 }

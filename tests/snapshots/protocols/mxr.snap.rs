@@ -172,10 +172,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -185,7 +186,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Module(number) => IdFilter::ANY
@@ -208,7 +209,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Module(number), Who::One) => IdFilter::ANY
@@ -1049,6 +1050,7 @@ pub struct OutputVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1060,9 +1062,9 @@ impl OutputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1072,7 +1074,7 @@ impl Layout for OutputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1085,6 +1087,7 @@ pub struct OutputCurrent {
     pub value_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
@@ -1096,9 +1099,9 @@ impl OutputCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1108,7 +1111,7 @@ impl Layout for OutputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_a, payload)
     }
 }
@@ -1126,6 +1129,7 @@ pub struct CurrentLimit {
     pub value: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
@@ -1137,9 +1141,9 @@ impl CurrentLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1149,7 +1153,7 @@ impl Layout for CurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1166,6 +1170,7 @@ pub struct DcBoardTemperature {
     pub value_c: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
@@ -1177,9 +1182,9 @@ impl DcBoardTemperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1189,7 +1194,7 @@ impl Layout for DcBoardTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_c, payload)
     }
 }
@@ -1205,6 +1210,7 @@ pub struct InputVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1216,9 +1222,9 @@ impl InputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1228,7 +1234,7 @@ impl Layout for InputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1241,6 +1247,7 @@ pub struct Pfc0Voltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Pfc0Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1252,9 +1259,9 @@ impl Pfc0Voltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1264,7 +1271,7 @@ impl Layout for Pfc0Voltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1277,6 +1284,7 @@ pub struct Pfc1Voltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Pfc1Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1288,9 +1296,9 @@ impl Pfc1Voltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1300,7 +1308,7 @@ impl Layout for Pfc1Voltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1317,6 +1325,7 @@ pub struct AmbientTemperature {
     pub value_c: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl AmbientTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
@@ -1328,9 +1337,9 @@ impl AmbientTemperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1340,7 +1349,7 @@ impl Layout for AmbientTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_c, payload)
     }
 }
@@ -1353,6 +1362,7 @@ pub struct PhaseAVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PhaseAVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1364,9 +1374,9 @@ impl PhaseAVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1376,7 +1386,7 @@ impl Layout for PhaseAVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1389,6 +1399,7 @@ pub struct PhaseBVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PhaseBVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1400,9 +1411,9 @@ impl PhaseBVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1412,7 +1423,7 @@ impl Layout for PhaseBVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1425,6 +1436,7 @@ pub struct PhaseCVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PhaseCVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1436,9 +1448,9 @@ impl PhaseCVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1448,7 +1460,7 @@ impl Layout for PhaseCVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1465,6 +1477,7 @@ pub struct PfcBoardTemperature {
     pub value_c: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PfcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
@@ -1476,9 +1489,9 @@ impl PfcBoardTemperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1488,7 +1501,7 @@ impl Layout for PfcBoardTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_c, payload)
     }
 }
@@ -1501,6 +1514,7 @@ pub struct RatedPower {
     pub value_w: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl RatedPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
@@ -1512,9 +1526,9 @@ impl RatedPower {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1524,7 +1538,7 @@ impl Layout for RatedPower {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_w, payload)
     }
 }
@@ -1537,6 +1551,7 @@ pub struct RatedCurrent {
     pub value_a: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl RatedCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
@@ -1548,9 +1563,9 @@ impl RatedCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1560,7 +1575,7 @@ impl Layout for RatedCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_a, payload)
     }
 }
@@ -1586,6 +1601,7 @@ pub struct SetAltitude {
     pub value_m: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAltitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m").limits(1000, 5000);
@@ -1597,9 +1613,9 @@ impl SetAltitude {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1609,7 +1625,7 @@ impl Layout for SetAltitude {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_m, payload)
     }
 }
@@ -1627,6 +1643,7 @@ pub struct SetOutputCurrent {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
@@ -1638,9 +1655,9 @@ impl SetOutputCurrent {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1650,7 +1667,7 @@ impl Layout for SetOutputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1681,6 +1698,7 @@ pub struct SetGroup {
     pub group: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(7).bits(5, 0)).limits(0, 60);
@@ -1692,9 +1710,9 @@ impl SetGroup {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1704,7 +1722,7 @@ impl Layout for SetGroup {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)
     }
 }
@@ -1726,6 +1744,7 @@ pub struct SetAddressMode {
     pub value: AddressMode,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAddressMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::bytes(4, 7));
@@ -1737,9 +1756,9 @@ impl SetAddressMode {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1749,7 +1768,7 @@ impl Layout for SetAddressMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1763,6 +1782,7 @@ pub struct SetOutputPower {
     pub value: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32, f64> = Signal::new("value", Place::bytes(4, 7)).limits(0.1, 1.0);
@@ -1774,9 +1794,9 @@ impl SetOutputPower {
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1786,7 +1806,7 @@ impl Layout for SetOutputPower {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1805,6 +1825,7 @@ pub struct SetOutputVoltage {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1816,9 +1837,9 @@ impl SetOutputVoltage {
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1828,7 +1849,7 @@ impl Layout for SetOutputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1856,6 +1877,7 @@ pub struct SetCurrentLimit {
     pub value: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
@@ -1867,9 +1889,9 @@ impl SetCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1879,7 +1901,7 @@ impl Layout for SetCurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1896,6 +1918,7 @@ pub struct SetOvervoltagePoint {
     pub value_v: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOvervoltagePoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
@@ -1907,9 +1930,9 @@ impl SetOvervoltagePoint {
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1919,7 +1942,7 @@ impl Layout for SetOvervoltagePoint {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
     }
 }
@@ -1938,6 +1961,7 @@ pub struct SwitchModules {
     pub value: Power,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchModules {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Power> = Signal::new("value", Place::bytes(4, 7));
@@ -1949,9 +1973,9 @@ impl SwitchModules {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1961,7 +1985,7 @@ impl Layout for SwitchModules {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1975,6 +1999,7 @@ pub struct ResetOvervoltage {
     pub value: Reset,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ResetOvervoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
@@ -1986,9 +2011,9 @@ impl ResetOvervoltage {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -1998,7 +2023,7 @@ impl Layout for ResetOvervoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2012,6 +2037,7 @@ pub struct SetOvervoltageRelevance {
     pub value: Relevance,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOvervoltageRelevance {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Relevance> = Signal::new("value", Place::bytes(4, 7));
@@ -2023,9 +2049,9 @@ impl SetOvervoltageRelevance {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2035,7 +2061,7 @@ impl Layout for SetOvervoltageRelevance {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2054,6 +2080,7 @@ pub struct ModuleStatus {
     pub value: Alarms,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleStatus {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Alarms> = Signal::new("value", Place::bytes(4, 7));
@@ -2065,9 +2092,9 @@ impl ModuleStatus {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2077,7 +2104,7 @@ impl Layout for ModuleStatus {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2095,6 +2122,7 @@ pub struct GroupAndAddress {
     pub address: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl GroupAndAddress {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u16> = Signal::new("group", Place::bytes(4, 5));
@@ -2108,9 +2136,9 @@ impl GroupAndAddress {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2120,7 +2148,7 @@ impl Layout for GroupAndAddress {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)?;
         Self::ADDRESS.put(self.address, payload)
     }
@@ -2135,6 +2163,7 @@ pub struct ResetShortCircuit {
     pub value: Reset,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ResetShortCircuit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
@@ -2146,9 +2175,9 @@ impl ResetShortCircuit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2158,7 +2187,7 @@ impl Layout for ResetShortCircuit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2172,6 +2201,7 @@ pub struct SetInputMode {
     pub value: InputMode,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<InputMode> = Signal::new("value", Place::bytes(4, 7));
@@ -2183,9 +2213,9 @@ impl SetInputMode {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -2195,7 +2225,7 @@ impl Layout for SetInputMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2208,6 +2238,7 @@ pub struct InputPower {
     pub value_w: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
@@ -2219,9 +2250,9 @@ impl InputPower {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2231,7 +2262,7 @@ impl Layout for InputPower {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_w, payload)
     }
 }
@@ -2246,6 +2277,7 @@ pub struct Altitude {
     pub value_m: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Altitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m");
@@ -2257,9 +2289,9 @@ impl Altitude {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2269,7 +2301,7 @@ impl Layout for Altitude {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_m, payload)
     }
 }
@@ -2282,6 +2314,7 @@ pub struct ActiveInputMode {
     pub value: ActiveInput,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ActiveInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<ActiveInput> = Signal::new("value", Place::bytes(4, 7));
@@ -2293,9 +2326,9 @@ impl ActiveInputMode {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2305,7 +2338,7 @@ impl Layout for ActiveInputMode {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2322,6 +2355,7 @@ pub struct SerialNumberLow {
     pub value: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SerialNumberLow {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
@@ -2333,9 +2367,9 @@ impl SerialNumberLow {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2345,7 +2379,7 @@ impl Layout for SerialNumberLow {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2362,6 +2396,7 @@ pub struct SerialNumberHigh {
     pub value: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SerialNumberHigh {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
@@ -2373,9 +2408,9 @@ impl SerialNumberHigh {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2385,7 +2420,7 @@ impl Layout for SerialNumberHigh {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -2402,6 +2437,7 @@ pub struct DcdcVersion {
     pub version: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DcdcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
@@ -2413,9 +2449,9 @@ impl DcdcVersion {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2425,7 +2461,7 @@ impl Layout for DcdcVersion {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION.put(self.version, payload)
     }
 }
@@ -2442,6 +2478,7 @@ pub struct PfcVersion {
     pub version: u16,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PfcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
@@ -2453,9 +2490,9 @@ impl PfcVersion {
     /// Builds the request [`read`](READ_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -2465,7 +2502,7 @@ impl Layout for PfcVersion {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION.put(self.version, payload)
     }
 }

@@ -106,10 +106,11 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Rectifier(_) => 0,
@@ -118,7 +119,7 @@ impl Destination for Target {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Rectifier(number) => IdFilter::ANY.id(Identifier::FUNCTION, 0x6).documented(
@@ -131,7 +132,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Rectifier(number), Who::One) => {
@@ -897,7 +898,7 @@ impl Layout for MeasurementA {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)?;
         Self::TEMPERATURE.encode(self.temperature_c, payload)?;
@@ -950,7 +951,7 @@ impl Layout for MeasurementB {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::INPUT.put(self.input, payload)?;
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::FAN_SPEED.put(self.fan_speed_rpm, payload)?;
@@ -969,6 +970,7 @@ pub struct VoltageSetPoint {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl VoltageSetPoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
@@ -995,17 +997,17 @@ impl VoltageSetPoint {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -1015,7 +1017,7 @@ impl Layout for VoltageSetPoint {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -1029,6 +1031,7 @@ pub struct CurrentLimit {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
@@ -1055,17 +1058,17 @@ impl CurrentLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -1075,7 +1078,7 @@ impl Layout for CurrentLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1089,6 +1092,7 @@ pub struct OutputSwitch {
     pub value: OutputCommand,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<OutputCommand> = Signal::new("value", Place::bytes(7, 4));
@@ -1114,17 +1118,17 @@ impl OutputSwitch {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -1134,7 +1138,7 @@ impl Layout for OutputSwitch {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1148,6 +1152,7 @@ pub struct MinimumFanSpeed {
     pub value_percent: u32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MinimumFanSpeed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> =
@@ -1176,17 +1181,17 @@ impl MinimumFanSpeed {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -1196,7 +1201,7 @@ impl Layout for MinimumFanSpeed {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_percent, payload)
     }
 }
@@ -1209,6 +1214,7 @@ pub struct OutputVoltage {
     pub value_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
@@ -1226,9 +1232,9 @@ impl OutputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1238,7 +1244,7 @@ impl Layout for OutputVoltage {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
     }
 }
@@ -1251,6 +1257,7 @@ pub struct OutputCurrent {
     pub value_a: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
@@ -1268,9 +1275,9 @@ impl OutputCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1280,7 +1287,7 @@ impl Layout for OutputCurrent {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
     }
 }
@@ -1294,6 +1301,7 @@ pub struct HeatSinkTemperature {
     pub value_c: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl HeatSinkTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4))
@@ -1319,9 +1327,9 @@ impl HeatSinkTemperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1331,7 +1339,7 @@ impl Layout for HeatSinkTemperature {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
     }
 }
@@ -1344,6 +1352,7 @@ pub struct InputFrequency {
     pub value_hz: f32,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(7, 4)).unit("Hz");
@@ -1361,9 +1370,9 @@ impl InputFrequency {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1373,7 +1382,7 @@ impl Layout for InputFrequency {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_hz, payload)
     }
 }
@@ -1386,6 +1395,7 @@ pub struct OperatingTime {
     pub value_h: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OperatingTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
@@ -1403,9 +1413,9 @@ impl OperatingTime {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1415,7 +1425,7 @@ impl Layout for OperatingTime {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_h, payload)
     }
 }
@@ -1428,6 +1438,7 @@ pub struct SerialNumber {
     pub value: Text<4>,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
@@ -1445,9 +1456,9 @@ impl SerialNumber {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1457,7 +1468,7 @@ impl Layout for SerialNumber {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1470,6 +1481,7 @@ pub struct Firmware {
     pub value: FirmwareValue,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Firmware {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FirmwareValue> = Signal::new("value", Place::bytes(4, 6));
@@ -1487,9 +1499,9 @@ impl Firmware {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1499,7 +1511,7 @@ impl Layout for Firmware {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1512,6 +1524,7 @@ pub struct State {
     pub value: Conditions,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl State {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Conditions> = Signal::new("value", Place::bytes(7, 4));
@@ -1529,9 +1542,9 @@ impl State {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+        Self::READ.inlined_request_to(route, &())
     }
 }
 
@@ -1541,7 +1554,7 @@ impl Layout for State {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1569,7 +1582,7 @@ impl Layout for Refusal {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
     }
 }
@@ -1584,6 +1597,7 @@ pub struct KeepAlive {
     pub outputs: KeepAliveOutputs,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new("outputs", Place::byte(1).bit(0));
@@ -1595,9 +1609,9 @@ impl KeepAlive {
     /// Builds the request [`tell`](TELL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::TELL.request_to(route, self)
+        Self::TELL.inlined_request_to(route, self)
     }
 }
 
@@ -1607,7 +1621,7 @@ impl Layout for KeepAlive {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::OUTPUTS.put(self.outputs, payload)
     }
 }

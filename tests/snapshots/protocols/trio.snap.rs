@@ -131,17 +131,18 @@ impl Addressed for Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Module(number) => IdFilter::ANY
@@ -150,7 +151,7 @@ impl Destination for Target {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Module(number), Who::One) => IdFilter::ANY
@@ -632,7 +633,7 @@ impl Layout for ReferenceValues {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)?;
         Self::OPERATION.put(self.operation, payload)?;
         Self::NOMINAL_VOLTAGE.encode(self.nominal_voltage_v, payload)?;
@@ -687,7 +688,7 @@ impl Layout for OutputValues {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::CURRENT.encode(self.current_a, payload)?;
         Self::POWER.encode(self.power_w, payload)?;
@@ -739,7 +740,7 @@ impl Layout for TemperatureValues {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TEMPERATURE.put(self.temperature_c, payload)?;
         Self::FAN_1.put(self.fan_1_rpm, payload)?;
         Self::FAN_2.put(self.fan_2_rpm, payload)
@@ -774,7 +775,7 @@ impl Layout for FirmwareVersion {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION.put(self.version, payload)
     }
 }
@@ -810,7 +811,7 @@ impl Layout for RunningTime {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::RUNNING.put(self.running_min, payload)?;
         Self::TOTAL.put(self.total_min, payload)
     }
@@ -846,7 +847,7 @@ impl Layout for ReplacementAdvice {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ADVICE.put(self.advice, payload)
     }
 }
@@ -886,6 +887,7 @@ pub struct Control {
     pub voltage_v: f64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Control {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<ControlMode> = Signal::new("mode", Place::byte(0));
@@ -913,19 +915,20 @@ impl Control {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<Control> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Control::SET.request_within(self.model, route, &self.values)
+        Control::SET.inlined_request_within(self.model, route, &self.values)
     }
 }
 
@@ -939,7 +942,7 @@ impl Layout for Control {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)?;
         Self::OPERATION.put(self.operation, payload)?;
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -963,6 +966,7 @@ pub struct SetAddress {
     pub address: u8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAddress {
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0)).limits(224, 239);
@@ -974,9 +978,9 @@ impl SetAddress {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET.request_to(route, self)
+        Self::SET.inlined_request_to(route, self)
     }
 }
 
@@ -986,7 +990,7 @@ impl Layout for SetAddress {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ADDRESS.put(self.address, payload)
     }
 }

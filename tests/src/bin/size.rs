@@ -5,18 +5,19 @@ use std::env::consts::ARCH;
 use std::path::Path;
 use std::{env, io, thread};
 
-use canspec_codegen::emit::Scaled;
+use canspec_codegen::emit::{Goal, Scaled};
 use canspec_tests::bare::{Codec, Program, Settings, Size, is_installed};
 
 /// The targets: this machine, and the processors of small devices if the toolchain has them.
 const TARGETS: [(&str, Option<&str>); 2] = [(ARCH, None), ("Cortex-M4F", Some("thumbv7em-none-eabihf"))];
-/// The optimizations, with their profiles.
-const PROFILES: [(&str, &str); 2] = [("z", "z"), ("3", "three")];
+/// The optimizations, with their profiles and goals.
+const PROFILES: [(&str, &str, Goal); 2] = [("z", "z", Goal::Size), ("3", "three", Goal::Speed)];
 
 /// A way to compile.
 struct Column {
     heading: String,
     settings: Settings<'static>,
+    goal: Goal,
     empty: Size,
 }
 
@@ -32,8 +33,10 @@ fn main() -> io::Result<()> {
     }
     println!("| | {} |\n|---|{}", headings.join(" | "), "---:|".repeat(headings.len()));
     let words: Vec<_> = env::args().skip(1).collect();
-    for (name, program) in programs().into_iter().filter(|(name, _)| words.iter().all(|word| name.contains(word))) {
-        println!("| {name} | {} |", cells(&program, &folder, &columns)?.join(" | "));
+    for ((name, small), (_, fast)) in programs(Goal::Size).into_iter().zip(programs(Goal::Speed)) {
+        if words.iter().all(|word| name.contains(word)) {
+            println!("| {name} | {} |", cells(&small, &fast, &folder, &columns)?.join(" | "));
+        }
     }
     Ok(())
 }
@@ -41,10 +44,10 @@ fn main() -> io::Result<()> {
 fn columns(folder: &Path) -> io::Result<Vec<Column>> {
     let targets = TARGETS.into_iter().filter(|(_, target)| target.is_none_or(is_installed));
     let columns = targets.flat_map(|(name, target)| {
-        PROFILES.map(|(level, profile)| {
+        PROFILES.map(|(level, profile, goal)| {
             let settings = Settings { profile, target };
             let empty = size(&Program::empty(), folder, settings)?;
-            Ok(Column { heading: format!("{name}, {level}"), settings, empty })
+            Ok(Column { heading: format!("{name}, {level}"), settings, goal, empty })
         })
     });
     columns.collect()
@@ -55,10 +58,10 @@ fn missing() -> impl Iterator<Item = (&'static str, &'static str)> {
     TARGETS.into_iter().filter_map(|(name, target)| Some((name, target.filter(|target| !is_installed(target))?)))
 }
 
-/// Returns the programs to measure, each with its name.
-fn programs() -> Vec<(String, Program)> {
+/// Returns the programs to measure, each with its name, of codecs with a goal.
+fn programs(goal: Goal) -> Vec<(String, Program)> {
     let of_scaled = |(what, scaled): (&str, Scaled)| {
-        let codecs = Codec::all("specs", scaled);
+        let codecs = Codec::all("specs", scaled, goal);
         codecs.iter().flat_map(|codec| of_codec(codec, what)).collect::<Vec<_>>()
     };
     let by_hand = [
@@ -81,10 +84,12 @@ fn of_codec(codec: &Codec, what: &str) -> Vec<(String, Program)> {
     programs
 }
 
-/// Compiles a program in each way, side by side.
-fn cells(program: &Program, folder: &Path, columns: &[Column]) -> io::Result<Vec<String>> {
+/// Compiles a program in each way, side by side: the one that is small, or the one that is fast.
+fn cells(small: &Program, fast: &Program, folder: &Path, columns: &[Column]) -> io::Result<Vec<String>> {
+    let program = |column: &Column| if column.goal == Goal::Size { small } else { fast };
     thread::scope(|scope| {
-        let cells: Vec<_> = columns.iter().map(|column| scope.spawn(|| cell(program, folder, column))).collect();
+        let cell = |column| scope.spawn(move || cell(program(column), folder, column));
+        let cells: Vec<_> = columns.iter().map(cell).collect();
         cells.into_iter().map(|cell| cell.join().expect("no cell panics")).collect()
     })
 }

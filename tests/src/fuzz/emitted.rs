@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use can_dbc::MessageId;
-use canspec_codegen::emit::{self, Dbc, Options, Scaled, Switch};
+use canspec_codegen::emit::{self, Dbc, Goal, Options, Scaled, Switch};
 use canspec_codegen::interpret::{Content, Frame, decode, encode};
 use canspec_codegen::model::{ModelId, Protocol, Side};
 
@@ -15,8 +15,9 @@ const FRAMES: usize = 16;
 
 /// Tests that every emitter makes what its language allows, and that frames come back.
 pub fn check(protocol: &Protocol) {
-    for (scaled, switch) in [(Scaled::F64, Switch::Never), (Scaled::Steps, Switch::Always)] {
-        let options = Options { scaled, serde: switch.clone(), defmt: switch.clone(), arbitrary: switch };
+    let ends = [(Scaled::F64, Goal::Speed, Switch::Never), (Scaled::Steps, Goal::Size, Switch::Always)];
+    for (scaled, goal, switch) in ends {
+        let options = Options { scaled, goal, serde: switch.clone(), defmt: switch.clone(), arbitrary: switch };
         let code = emit::manual(protocol, &options) + &emit::rust(protocol, &options);
         names::check(&syn::parse_file(&code).unwrap_or_else(|error| panic!("{error}\n{code}")));
     }

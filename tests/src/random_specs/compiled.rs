@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-use canspec_codegen::emit::{Options, Scaled, Switch};
+use canspec_codegen::emit::{Goal, Options, Scaled, Switch};
 use canspec_codegen::generate;
 use canspec_codegen::source::Source;
 
@@ -15,7 +15,8 @@ use canspec_codegen::source::Source;
 ///
 /// What is wrong with the spec, or with scaled values of this type.
 pub fn rust(text: &str, scaled: Scaled) -> Result<String, String> {
-    let every = Options { scaled, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always };
+    let goal = if scaled == Scaled::Steps { Goal::Size } else { Goal::Speed };
+    let every = Options { scaled, goal, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always };
     let source = Source::new("spec.yaml", text.as_bytes().to_vec()).map_err(|errors| errors.concise())?;
     generate(source, &every).map(|generated| generated.code).map_err(|errors| errors.concise())
 }

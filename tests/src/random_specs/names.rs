@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-use canspec_codegen::emit::{self, Options, Scaled, Switch, is_word_of_rust};
+use canspec_codegen::emit::{self, Goal, Options, Scaled, Switch, is_word_of_rust};
 use fastrand::Rng;
 use proc_macro2::{TokenStream, TokenTree};
 
@@ -53,7 +53,7 @@ const ENDINGS: [&str; 26] = [
 static HOSTILE: LazyLock<Vec<String>> = LazyLock::new(|| {
     let mut names: BTreeSet<String> = WORDS.split_whitespace().map(str::to_owned).collect();
     let [serde, defmt, arbitrary] = [const { Switch::Always }; 3];
-    let every = Options { scaled: Scaled::F32, serde, defmt, arbitrary };
+    let every = Options { scaled: Scaled::F32, goal: Goal::Speed, serde, defmt, arbitrary };
     for path in specs("tests/specs/features") {
         collect(emit::tokens(&protocol(path), &every), &mut names);
     }

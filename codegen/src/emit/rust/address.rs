@@ -73,7 +73,7 @@ pub fn targets(Targets { variants, sender }: &Targets, ways: &[Way], derives: De
     let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
     let definitions = variants.iter().map(|target| definition(target, derives));
     let sender = sender.as_ref().map(sent_by);
-    let destination = destination(variants, ways);
+    let destination = destination(variants, ways, derives);
     quote! {
         /// Whom a request addresses.
         #attributes
@@ -131,13 +131,14 @@ fn module(Target { variant, number, .. }: &Target) -> TokenStream {
     }
 }
 
-fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
+fn destination(variants: &[Target], ways: &[Way], derives: Derives) -> TokenStream {
+    let (expected, inlined) = (derives.with_inlined(), derives.inlined());
     let modes = variants.iter().map(|Target { variant, mode, number, .. }| {
         let (index, number) = (Literal::usize_unsuffixed(mode.place()), number.map(|_| quote!((_))));
         quote!(Self::#variant #number => #index)
     });
-    let request = request(variants);
-    let replies = replies(variants);
+    let request = request(variants, &inlined);
+    let replies = replies(variants, &inlined);
     let route = route(ways);
     let module = variants.iter().find(|target| target.is_module).map(module);
     quote! {
@@ -147,10 +148,11 @@ fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
             #module
         }
 
+        #expected
         impl Destination for Target {
             type Protocol = Message;
 
-            #[inline]
+            #inlined
             fn mode(self) -> usize {
                 match self { #(#modes),* }
             }
@@ -165,7 +167,7 @@ fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
 }
 
 /// Emits what the identifiers of requests show.
-fn request(variants: &[Target]) -> TokenStream {
+fn request(variants: &[Target], inlined: &TokenStream) -> TokenStream {
     let arms = variants.iter().map(|target| {
         let pattern = pattern_of(target, &target.request);
         let filter = id_filter(
@@ -177,7 +179,7 @@ fn request(variants: &[Target]) -> TokenStream {
     });
     let sender = sender_argument(variants.iter().flat_map(|target| &target.request));
     quote! {
-        #[inline]
+        #inlined
         fn request(self, #sender: Option<i32>) -> Result<IdFilter, Error> {
             Ok(match self { #(#arms),* })
         }
@@ -185,7 +187,7 @@ fn request(variants: &[Target]) -> TokenStream {
 }
 
 /// Emits what the identifiers of replies show.
-fn replies(variants: &[Target]) -> TokenStream {
+fn replies(variants: &[Target], inlined: &TokenStream) -> TokenStream {
     let replies =
         || variants.iter().flat_map(|target| target.replies.iter().map(move |(who, shown)| (target, who, shown)));
     let arms = replies().map(|(target, who, shown)| {
@@ -197,14 +199,14 @@ fn replies(variants: &[Target]) -> TokenStream {
     let sender = sender_argument(replies().flat_map(|(.., shown)| shown));
     if arms.clone().next().is_none() {
         return quote!(
-            #[inline]
+            #inlined
             fn replies(self, _: Who, _: Option<i32>) -> Option<IdFilter> {
                 None
             }
         );
     }
     quote! {
-        #[inline]
+        #inlined
         fn replies(self, who: Who, #sender: Option<i32>) -> Option<IdFilter> {
             Some(match (self, who) {
                 #(#arms,)*

@@ -1,11 +1,11 @@
-//! Optional traits, which the options add to items, each behind its switch.
+//! Attributes and optional traits, which the options add to items.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::emit::{Options, Switch};
+use crate::emit::{Goal, Options, Switch};
 
-/// Emits the optional traits of items.
+/// Emits what the options add to items.
 #[derive(Clone, Copy)]
 pub struct Derives<'a> {
     options: &'a Options,
@@ -14,6 +14,37 @@ pub struct Derives<'a> {
 impl<'a> Derives<'a> {
     pub fn new(options: &'a Options) -> Self {
         Self { options }
+    }
+
+    /// Emits the attribute of a function that builds requests, or addresses them.
+    pub fn inlined(self) -> TokenStream {
+        match self.options.goal {
+            Goal::Speed => quote!(#[inline(always)]),
+            Goal::Size => quote!(#[inline]),
+        }
+    }
+
+    /// Emits the attribute of an `impl` with such functions.
+    pub fn with_inlined(self) -> Option<TokenStream> {
+        let reason = "a call takes more than most messages do";
+        (self.options.goal == Goal::Speed).then(|| quote!(#[expect(clippy::inline_always, reason = #reason)]))
+    }
+
+    /// Emits the name of the method of an exchange that builds a request.
+    pub fn request_to(self) -> Ident {
+        self.of_goal("request_to")
+    }
+
+    /// Emits the name of the method of an exchange that builds a request to a device model.
+    pub fn request_within(self) -> Ident {
+        self.of_goal("request_within")
+    }
+
+    fn of_goal(self, name: &str) -> Ident {
+        match self.options.goal {
+            Goal::Speed => format_ident!("inlined_{name}"),
+            Goal::Size => format_ident!("{name}"),
+        }
     }
 
     /// Emits the imports of the crates, which the runtime re-exports.

@@ -190,6 +190,13 @@ mod tests {
     }
 
     #[test]
+    fn a_constant_in_a_function_is_laid_out_like_one_outside() {
+        let long = name(50);
+        stays("fn a() -> b {\n    const C: D<e, f> = G::h.i().j(1, 2.0);\n    Some(&C)\n}\n");
+        stays(&format!("fn a() -> b {{\n    const C: D<e, f> =\n        G::h.{long}().{long}();\n    Some(&C)\n}}\n"));
+    }
+
+    #[test]
     fn what_is_no_item_and_comments_stay_as_they_are() {
         stays("/// Takes (\n/// both) <\npub struct A(pub u8);\n");
         assert_eq!(formatted([quote::quote!(no Rust)]), "no Rust\n");

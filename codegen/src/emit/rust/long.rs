@@ -1,12 +1,12 @@
 //! What several frames carry together: its struct, its signals, and how the joined data are read and written.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::carrier::in_parts;
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::message::{kinds, request, special_value, value};
+use super::message::{self, kinds, special_value, value};
 use super::plan::literal::decimal;
 use super::plan::long::{Carriage, Field, Length, Long, Row, Step};
 use super::plan::message::Message;
@@ -25,13 +25,15 @@ pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
     let transfers = transfer.iter().flat_map(|transfer| transfer.requests.iter().map(|own| sent(own, transfer)));
     let bare = transfer.iter().flat_map(|transfer| transfer.bare.iter().map(|own| bare(own, transfer)));
     let transferred = transfer.as_ref().filter(|_| !fields.is_empty()).map(|transfer| transferred(name, transfer));
-    let (signals, requests) = (fields.iter().map(signal), requests.iter().map(request));
+    let signals = fields.iter().map(|field| signal(field, name));
+    let (inlined, requests) = message::requests(requests, derives);
     let parts = parts.iter().map(in_parts);
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
     let optional = if fields.is_empty() { derives.message(name, true) } else { derives.long_message(name) };
     quote! {
         #definition
+        #inlined
         impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#parts)* #(#transfers)* #(#bare)* #(#by_model)* }
         #layout
         #transferred
@@ -65,7 +67,7 @@ fn member(Field { signal, row, .. }: &Field, derives: Derives) -> TokenStream {
     quote!(#comment #attribute pub #name: #kind)
 }
 
-fn signal(Field { signal, start, row, run }: &Field) -> TokenStream {
+fn signal(Field { signal, start, row, run }: &Field, owner: &Ident) -> TokenStream {
     let (constant, comment, start) = (&signal.constant, &signal.comment, Literal::u16_unsuffixed(*start));
     let (kinds, value) = (kinds(signal), value(signal));
     if let Some(run) = run {
@@ -86,7 +88,7 @@ fn signal(Field { signal, start, row, run }: &Field) -> TokenStream {
         }
     });
     let values = signal.values.iter().map(|special| special_value(special, signal));
-    let on_model = scales::on_model(signal, &quote!(Self::#constant.signal()));
+    let on_model = scales::on_model(signal, &quote!(#owner::#constant.signal()));
     quote! {
         #comment
         pub const #constant: LongSignal<#kinds> = LongSignal::new(#start, #value) #step;

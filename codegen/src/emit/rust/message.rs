@@ -1,6 +1,6 @@
 //! One message: its structs, signals, exchanges and requests.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, quote};
 
 use super::derives::Derives;
@@ -14,7 +14,7 @@ use super::scales;
 pub fn message(message: &Message, derives: Derives) -> TokenStream {
     let structs = message.structs.iter().map(|own| {
         let definition = definition(message, own, derives);
-        let (constants, layout) = (constants(message, own), layout(message, own));
+        let (constants, layout) = (constants(message, own, derives), layout(message, own));
         let optional = derives.message(&own.name, own.signals.is_empty());
         quote!(#definition #constants #layout #optional)
     });
@@ -40,27 +40,28 @@ fn member(Signal { coding, member, .. }: &Signal, count: usize, derives: Derives
     quote!(#comment #float pub #name: #kind)
 }
 
-fn constants(message: &Message, own: &Struct) -> TokenStream {
+fn constants(message: &Message, own: &Struct, derives: Derives) -> TokenStream {
     let Struct { name, is_home, reserved, requests, within, .. } = own;
-    let signals = message.signals.iter().filter(|_| *is_home).map(signal);
+    let signals = message.signals.iter().filter(|_| *is_home).map(|known| signal(known, name));
     let owner = if *is_home { quote!(Self) } else { message.home.to_token_stream() };
     let by_model = own.signals.iter().filter_map(|id| scales::methods(&message.signals[*id], &owner));
     let reserved = reserved.iter().map(|(comment, bits)| quote!(#comment pub const RESERVED: Data = #bits;));
     let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
-    let requests = requests.iter().map(request);
+    let (inlined, requests) = self::requests(requests, derives);
     let of_model = within.as_ref().map(|Within { requests, .. }| {
-        let requests = requests.iter().map(request_of_model);
-        quote!(impl Within<#name> { #(#requests)* })
+        let (inlined, requests) =
+            (derives.with_inlined(), requests.iter().map(|known| request_of_model(known, derives)));
+        quote!(#inlined impl Within<#name> { #(#requests)* })
     });
     let within = within.as_ref().map(self::within);
-    quote!(impl #name { #(#signals)* #(#reserved)* #(#exchanges)* #within #(#requests)* #(#by_model)* } #of_model)
+    quote!(#inlined impl #name { #(#signals)* #(#reserved)* #(#exchanges)* #within #(#requests)* #(#by_model)* } #of_model)
 }
 
-fn signal(signal: &Signal) -> TokenStream {
+fn signal(signal: &Signal, owner: &Ident) -> TokenStream {
     let Signal { constant, comment, .. } = signal;
     let (kinds, value) = (kinds(signal), value(signal));
     let values = signal.values.iter().map(|special| special_value(special, signal));
-    let on_model = scales::on_model(signal, &quote!(Self::#constant));
+    let on_model = scales::on_model(signal, &quote!(#owner::#constant));
     quote!(#comment pub const #constant: Signal<#kinds> = #value; #(#values)* #on_model)
 }
 
@@ -109,25 +110,36 @@ fn within(Within { exchange, .. }: &Within) -> TokenStream {
     }
 }
 
-/// Emits the method that builds a request.
-pub fn request(Request { method, comment, exchange, reply, carries }: &Request) -> TokenStream {
+/// Emits the attribute of an `impl`, and its methods that build requests.
+pub fn requests<'a>(
+    known: impl IntoIterator<Item = &'a Request>,
+    derives: Derives,
+) -> (Option<TokenStream>, Vec<TokenStream>) {
+    let requests: Vec<_> = known.into_iter().map(|known| request(known, derives)).collect();
+    (derives.with_inlined().filter(|_| !requests.is_empty()), requests)
+}
+
+fn request(known: &Request, derives: Derives) -> TokenStream {
+    let Request { method, comment, exchange, reply, carries } = known;
+    let (inlined, request_to) = (derives.inlined(), derives.request_to());
     let (receiver, content) = if *carries { (quote!(&self,), quote!(self)) } else { (quote!(), quote!(&())) };
     quote! {
         #comment
-        #[inline]
+        #inlined
         pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
-            #exchange.request_to(route, #content)
+            #exchange.#request_to(route, #content)
         }
     }
 }
 
 /// Emits the method that builds a request to a device model.
-fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request) -> TokenStream {
+fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request, derives: Derives) -> TokenStream {
+    let (inlined, request_within) = (derives.inlined(), derives.request_within());
     quote! {
         #comment
-        #[inline]
+        #inlined
         pub fn #method(&self, route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
-            #exchange.request_within(self.model, route, &self.values)
+            #exchange.#request_within(self.model, route, &self.values)
         }
     }
 }
@@ -163,7 +175,7 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
             #sized
             #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
             #[inline(always)]
-            fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> { #end #(#others?;)* #last }
+            fn encode(&self, payload: &mut Payload) -> Result<(), Error> { #end #(#others?;)* #last }
         }
     })
 }

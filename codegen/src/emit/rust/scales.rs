@@ -28,13 +28,20 @@ pub fn on_model(signal: &Signal, any: &TokenStream) -> Option<TokenStream> {
             None => groups.push((vec![&row.model], scaled)),
         }
     }
-    let arms = groups.iter().map(|(models, scaled)| quote!(#(Model::#models)|* => Some(#scaled),));
+    let arms = groups.iter().map(|(models, scaled)| {
+        quote! {
+            #(Model::#models)|* => {
+                const SIGNAL: Signal<#raw, #kind> = #scaled;
+                Some(&SIGNAL)
+            }
+        }
+    });
     let others = has_others.then(|| quote!(_ => None,));
     let comment = format!(" Returns the signal `{name}` of a device model; `None` of a model without a scale.");
     Some(quote! {
         #[doc = #comment]
         #[must_use]
-        pub const fn #on(model: Model) -> Option<Signal<#raw, #kind>> {
+        pub const fn #on(model: Model) -> Option<&'static Signal<#raw, #kind>> {
             match model { #(#arms)* #others }
         }
     })
@@ -42,7 +49,7 @@ pub fn on_model(signal: &Signal, any: &TokenStream) -> Option<TokenStream> {
 
 /// Emits the methods of a struct that read and set the value. `owner` has the method for the device model.
 pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
-    let Signal { name, member, scales, .. } = signal;
+    let Signal { name, constant, member, scales, .. } = signal;
     let Scales { on, get, set, message, kind, .. } = scales.as_ref()?;
     let value = member.value();
     let raw = if member.is_optional { quote!(self.#value?) } else { quote!(self.#value) };
@@ -61,7 +68,7 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
         /// # Errors
         /// Refuses a model without a scale, and a value outside its limits.
         pub fn #set(&mut self, model: Model, value: #kind) -> Result<(), Error> {
-            let signal = #owner::#on(model).ok_or(Error::Meaning { message: #message, signal: #name })?;
+            let signal = #owner::#on(model).ok_or(#owner::#constant.without_scale(#message))?;
             self.#value = #given;
             Ok(())
         }

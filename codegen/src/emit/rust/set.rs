@@ -5,14 +5,14 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::message::request;
+use super::message;
 use super::plan::message::Message;
 use super::plan::set::{Assembly, Member, Requests, Set};
 
 /// Emits the struct, its requests, and what an assembler needs.
 pub fn set(message: &Message, set: &Set, derives: Derives) -> TokenStream {
     let definition = definition(&message.home, set, derives);
-    let implementation = implementation(message, set);
+    let implementation = implementation(message, set, derives);
     let assembly = set.assembly.as_ref().map(|known| assembly(&message.home, set, known));
     quote!(#definition #implementation #assembly)
 }
@@ -24,12 +24,12 @@ fn definition(name: &Ident, Set { comment, is_exact, members, .. }: &Set, derive
     quote!(#comment #attributes pub struct #name { #(#members),* })
 }
 
-fn implementation(message: &Message, set: &Set) -> TokenStream {
+fn implementation(message: &Message, set: &Set, derives: Derives) -> TokenStream {
     let name = &message.home;
     let exchanges = message.exchanges.iter().map(exchange);
-    let own = message.structs.iter().flat_map(|known| &known.requests).map(request);
+    let (inlined, own) = message::requests(message.structs.iter().flat_map(|known| &known.requests), derives);
     let split = set.requests.as_ref().map(|known| requests(known, &set.members));
-    quote!(impl #name { #(#exchanges)* #(#own)* #split })
+    quote!(#inlined impl #name { #(#exchanges)* #(#own)* #split })
 }
 
 /// Emits the method that builds a request for each member.

@@ -1,9 +1,9 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
-use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
+use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Task, Who};
 use crate::{
-    Access, AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload,
-    Place, Problem, Protocol, Received, Selector, Signal,
+    Access, AddressType, AnySignal, Bits, Error, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode,
+    Payload, Place, Problem, Protocol, Received, Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -81,7 +81,7 @@ impl Layout for Value {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&VALUE];
     const DECODE: Decode<Self> = |data| Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) };
 
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         VALUE.put(self.value, payload)
     }
 }

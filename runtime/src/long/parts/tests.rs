@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::long::{Elements, LongPayload, LongSignal};
-use crate::plumbing::{Address, Decode, Headed, Incoming, Pattern, Refusing, Task, Who};
+use crate::plumbing::{Address, Decode, Headed, Incoming, Pattern, Task, Who};
 use crate::{
     Access, AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Payload, Problem, Received,
     Signal,
@@ -88,7 +88,7 @@ impl Layout for State {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { cells: Place::byte(0).read(data) };
 
-    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
         Ok(())
     }
 }
@@ -103,7 +103,7 @@ impl Layout for CellsPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { part: Cells::NUMBER.read(data), data: Cells::DATA.read(data) };
 
-    fn encode<E: Refusing>(&self, _: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
         Ok(())
     }
 }

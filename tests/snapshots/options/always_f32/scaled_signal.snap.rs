@@ -232,7 +232,7 @@ impl Layout for SetOutput {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
         Self::TEMPERATURE.encode(self.temperature_c, payload)?;
         Self::DELAY.put(self.delay_s, payload)?;

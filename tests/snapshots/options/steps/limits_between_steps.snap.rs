@@ -71,24 +71,25 @@ impl Addressed for Message {
     type Target = Target;
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
-    #[inline]
+    #[inline(always)]
     fn mode(self) -> usize {
         match self {
             Self::Charger => 0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Charger => IdFilter::ANY.id(Identifier::SENDER, 0x0),
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Charger, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
@@ -133,6 +134,7 @@ pub struct SetLimit {
     pub cold_raw: i8,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLimit {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u8> =
@@ -158,9 +160,9 @@ impl SetLimit {
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -175,7 +177,7 @@ impl Layout for SetLimit {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_raw, payload)?;
         Self::INTERVAL.put(self.interval_s, payload)?;
         Self::SLOPE.put(self.slope, payload)?;
@@ -192,6 +194,7 @@ pub struct SetTotal {
     pub total: u64,
 }
 
+#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotal {
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u64> = Signal::new("total", Place::bytes(0, 7)).limits(1, 9_007_199_254_740_995);
@@ -203,9 +206,9 @@ impl SetTotal {
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    #[inline]
+    #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::WRITE.request_to(route, self)
+        Self::WRITE.inlined_request_to(route, self)
     }
 }
 
@@ -215,7 +218,7 @@ impl Layout for SetTotal {
 
     #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
-    fn encode<E: Refusing>(&self, payload: &mut Payload<E>) -> Result<(), E> {
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TOTAL.put(self.total, payload)
     }
 }

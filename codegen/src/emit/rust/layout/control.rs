@@ -1,6 +1,6 @@
 //! Blocks, closures, conditions and choices.
 
-use syn::{Arm, Block, Expr, ExprClosure, ExprIf, ExprMatch, Pat, Stmt};
+use syn::{Arm, Block, Expr, ExprClosure, ExprIf, ExprMatch, Item, ItemConst, Pat, Stmt, parse_quote};
 
 use super::assignment::{assigned, is_better_below};
 use super::flat::{flat, pattern, patterns, tokens};
@@ -26,9 +26,19 @@ fn statement(known: &Stmt, shape: Shape) -> String {
             let end = if end.is_some() { ";" } else { "" };
             shape.keeping(end.len()).rewrite(expr).or_else(|| flat(expr)).map(|text| text + end)
         }
+        Stmt::Item(Item::Const(item)) => {
+            let before = format!("{}{}", " ".repeat(shape.indent), before_value(item));
+            assigned(&before, &item.expr, shape.line(), 1).map(|text| format!("{};", text.trim_start()))
+        }
         Stmt::Item(_) | Stmt::Macro(_) => None,
     };
     text.unwrap_or_else(|| tokens(known))
+}
+
+/// Returns what stands before the value of a constant.
+fn before_value(ItemConst { ident, ty, .. }: &ItemConst) -> String {
+    let text = prettyplease::unparse(&parse_quote!(const #ident: #ty = ();));
+    text.trim_end().trim_end_matches(" ();").to_owned()
 }
 
 /// Lays out a block.

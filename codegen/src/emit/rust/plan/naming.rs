@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 102] = [
+const TAKEN: [&str; 101] = [
     "Access",
     "Address",
     "AddressType",
@@ -82,7 +82,6 @@ const TAKEN: [&str; 102] = [
     "ReadPath",
     "Reading",
     "Received",
-    "Refusing",
     "Replies",
     "Reply",
     "Report",
