@@ -211,6 +211,12 @@ mod tests {
     }
 
     #[test]
+    fn an_error_can_be_handed_to_another_thread() {
+        fn is_handed_over<T: Send + Sync>(_: T) {}
+        is_handed_over(Error::Model { message: "set" });
+    }
+
+    #[test]
     fn errors_are_equal_if_they_say_the_same() {
         const ONE: Signal<u8> = Signal::new("level", Place::byte(0)).limits(1, 5);
         const SAME: Signal<u8> = Signal::new("level", Place::byte(1)).limits(1, 5);
