@@ -111,9 +111,6 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// Returns the number.
     fn number(self) -> Number;
 
-    /// Tests whether this is not a number.
-    fn is_nan(self) -> bool;
-
     /// Returns a limit as precisely as raw values of the type `R` can meet it.
     #[must_use]
     fn limit<R: Raw>(self) -> Self;
@@ -169,11 +166,6 @@ impl Scaled for f64 {
     }
 
     #[inline]
-    fn is_nan(self) -> bool {
-        self.is_nan()
-    }
-
-    #[inline]
     fn limit<R: Raw>(self) -> Self {
         R::limit(self)
     }
@@ -219,11 +211,6 @@ impl Scaled for f32 {
     #[inline]
     fn number(self) -> Number {
         Number::Single(self)
-    }
-
-    #[inline]
-    fn is_nan(self) -> bool {
-        self.is_nan()
     }
 
     #[inline]
