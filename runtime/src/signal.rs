@@ -337,12 +337,6 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if self.specials.is_empty() { None } else { named(self.specials, bits) }
     }
 
-    /// Returns the name of a special raw value.
-    fn name_of(&self, index: u32) -> &'static str {
-        let special = usize::try_from(index).ok().and_then(|index| self.specials.get(index));
-        special.map_or("", |(_, name)| *name)
-    }
-
     #[inline(always)]
     const fn exact_scale(&self) -> Scale {
         match self.scale {

@@ -3,7 +3,7 @@
 use core::cmp::Ordering;
 use core::fmt;
 
-use crate::error::{Fault, Value};
+use crate::error::{Fault, Refusable, Value};
 use crate::physical::Physical;
 use crate::raw::Raw;
 use crate::{Data, Error, Meaning, Number, Payload, Place, Signal};
@@ -79,7 +79,7 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
         let bits = self.place.any_bits(*data, R::SIGNED);
         let value = R::from_bits(bits);
         let meaning = match (self.special(bits), self.scale) {
-            (Some(index), _) => Meaning::Name(self.name_of(index)),
+            (Some(index), _) => Meaning::Name(self.special_name(index)),
             (None, _) if self.is_by_model => Meaning::None,
             (None, Some(_)) if R::IS_NUMBER && value.is_finite() => {
                 Meaning::Number(self.physical(value).number(self.scale))

@@ -47,6 +47,7 @@ impl<R: Raw, F: Physical<R>> Refusable for Signal<R, F> {
     }
 
     fn special_name(&self, index: u32) -> &'static str {
-        self.name_of(index)
+        let special = usize::try_from(index).ok().and_then(|index| self.specials.get(index));
+        special.map_or("", |(_, name)| *name)
     }
 }
