@@ -84,10 +84,14 @@ impl Frame {
         length: Option<u8>,
         frame: &impl embedded_can::Frame,
     ) -> Option<Self> {
-        let bytes = frame.data();
+        if frame.is_data_frame() { Self::of_data(id, extended, length, frame.data()) } else { None }
+    }
+
+    /// Copies data, which must have `length` bytes if that is known, and at most eight.
+    #[inline(always)]
+    pub(crate) fn of_data(id: u32, extended: bool, length: Option<u8>, bytes: &[u8]) -> Option<Self> {
         let is_right = length.is_none_or(|length| usize::from(length) == bytes.len());
-        let actual =
-            u8::try_from(bytes.len()).ok().filter(|actual| is_right && *actual <= 8 && frame.is_data_frame())?;
+        let actual = u8::try_from(bytes.len()).ok().filter(|actual| is_right && *actual <= 8)?;
         Some(Self { id, extended, length: length.unwrap_or(actual), filling: Filling::Zeros, data: padded(bytes) })
     }
 
@@ -177,14 +181,8 @@ const fn cut(data: Data, length: u8) -> (u8, Data) {
 
 /// Copies a classic data frame.
 pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
-    Some(Frame { data: padded(frame.data()), ..without_data(frame)? })
-}
-
-/// Copies a classic data frame with zeros for its data.
-pub fn without_data(frame: &impl embedded_can::Frame) -> Option<Frame> {
     let (id, extended) = raw_id(frame.id());
-    let length = u8::try_from(frame.data().len()).ok().filter(|length| *length <= 8 && frame.is_data_frame())?;
-    Some(Frame { id, extended, length, filling: Filling::Zeros, data: Data::default() })
+    Frame::copied(id, extended, None, frame)
 }
 
 /// Returns the first eight of `bytes`, filled up with zeros.

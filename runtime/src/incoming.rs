@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 
 use crate::address::Rank;
-use crate::protocol::{Headed, Heading, heading, own_id};
+use crate::frame::padded;
+use crate::protocol::{Headed, Heading, heading, is_own, own_id};
 use crate::{Bits, Data, Exchange, Frame, IdentifierFields, Kind, Layout, Place, Problem, Protocol, Received};
 
 /// A frame of a protocol while it is recognised, and the number of the device model that it should be of.
@@ -34,6 +35,25 @@ impl Incoming {
     #[inline(always)]
     pub(crate) const fn of<P>(self) -> IncomingOf<P> {
         IncomingOf { frame: self, protocol: PhantomData }
+    }
+
+    /// Reads a data frame that has the width, the fixed bits and the length of a protocol's frames.
+    ///
+    /// # Errors
+    ///
+    /// Says why the frame is none of the protocol.
+    #[inline(always)]
+    pub(crate) fn read<P: Protocol>(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
+        let bytes = frame.data();
+        let Some(id) = own_id::<P>(frame) else {
+            let is_classic = frame.is_data_frame() && bytes.len() <= 8;
+            return Err(if is_classic { Problem::Identifier } else { Problem::Frame });
+        };
+        if !frame.is_data_frame() {
+            return Err(Problem::Frame);
+        }
+        let copied = if is_own::<P>(id) { Frame::of_data(id, P::FRAME.is_extended(), P::LENGTH, bytes) } else { None };
+        copied.map(|frame| Self::new(frame, model)).ok_or_else(|| refused::<P>(id, bytes))
     }
 
     /// Returns the value of a field of the identifier.
@@ -129,8 +149,16 @@ impl Incoming {
     /// Always.
     #[inline(always)]
     pub fn unknown<P: Protocol>(&self) -> Result<Received<P>, Problem> {
-        let data = if P::DATA_SELECTORS { self.frame.bytes() } else { Data::default() };
-        Err(unrecognised::<P>(self.frame.raw_id(), self.frame.byte_count(), data))
+        Err(if P::LENGTH.is_some() {
+            self.unless_foreign::<P>(Problem::UnknownMessage)
+        } else {
+            unrecognised::<P>(self.raw_id(), self.frame.byte_count(), self.frame.bytes())
+        })
+    }
+
+    #[inline(always)]
+    fn unless_foreign<P: Protocol>(&self, problem: Problem) -> Problem {
+        if P::Identifier::is_foreign(self.raw_id()) { Problem::Foreign } else { problem }
     }
 }
 
@@ -160,26 +188,36 @@ impl<P: Protocol> Headed for IncomingOf<P> {
 
     #[inline(always)]
     fn to_neither(self) -> Self::Output {
-        self.frame.unknown()
+        Err(self.frame.unless_foreign::<P>(Problem::Identifier))
     }
 }
 
-/// Says why a frame is not recognised, by the same tests.
-#[cold]
-pub fn problem<P: Protocol>(classic: Option<Frame>) -> Problem {
-    match classic.map(|frame| (own_id::<P>(&frame), frame)) {
-        None => Problem::Frame,
-        Some((None, _)) => Problem::Identifier,
-        Some((Some(id), frame)) => unrecognised::<P>(id, frame.byte_count(), frame.bytes()),
+/// Says why a data frame is none of the protocol, or has a wrong length.
+///
+/// If all frames have the same length, that takes few instructions. They stand where they are needed, since a call
+/// would make decoders save registers.
+#[inline(always)]
+fn refused<P: Protocol>(id: u32, bytes: &[u8]) -> Problem {
+    let data = if P::DATA_SELECTORS { padded(bytes) } else { Data::default() };
+    match u8::try_from(bytes.len()) {
+        Ok(length @ ..=8) if P::LENGTH.is_some() => problem::<P>(id, length, data),
+        Ok(length @ ..=8) => unrecognised::<P>(id, length, data),
+        _ => Problem::Frame,
     }
+}
+
+/// The same as [`problem`], as one function for many messages.
+#[cold]
+#[inline(never)]
+fn unrecognised<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
+    problem::<P>(id, length, data)
 }
 
 /// Says why a data frame is not recognised whose identifier has the right width.
 ///
 /// It takes the parts of the frame, or there would have to be a frame in memory.
-#[cold]
-#[inline(never)]
-fn unrecognised<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
+#[inline(always)]
+fn problem<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
     if P::Identifier::is_foreign(id) {
         return Problem::Foreign;
     }

@@ -58,6 +58,13 @@ impl Bits {
         self.get(id as u64) as u32
     }
 
+    /// Returns the low eight of these bits of an identifier.
+    #[expect(clippy::cast_possible_truncation, reason = "it drops the others")]
+    #[inline(always)]
+    pub const fn byte(self, id: u32) -> u8 {
+        self.get(id as u64) as u8
+    }
+
     /// Returns these bits of an identifier as a raw value.
     #[inline(always)]
     pub fn read<R: Raw>(self, id: u32) -> R {

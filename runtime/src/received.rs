@@ -2,11 +2,9 @@
 
 use core::mem::discriminant;
 
-use crate::frame::{classic, without_data};
-use crate::incoming::{Incoming, problem};
+use crate::incoming::Incoming;
 use crate::layout::{Signals, Task};
 use crate::plumbing::Way;
-use crate::protocol::{is_own, own_id};
 use crate::reply::{error_code, has_error, selected};
 use crate::status::set_bits;
 use crate::{
@@ -55,17 +53,8 @@ impl<P: Protocol> Received<P> {
 
     #[inline]
     pub(crate) fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        match Self::incoming(model, frame) {
-            Some(incoming) => P::Identifier::head(incoming.raw_id(), incoming.of::<P>()),
-            None => Err(refused::<P>(frame)),
-        }
-    }
-
-    #[inline(always)]
-    fn incoming(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<Incoming> {
-        let id = own_id::<P>(frame).filter(|id| is_own::<P>(*id))?;
-        let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
-        Some(Incoming::new(frame, model))
+        let incoming = Incoming::read::<P>(model, frame)?;
+        P::Identifier::head(incoming.raw_id(), incoming.of::<P>())
     }
 
     #[inline(always)]
@@ -368,12 +357,6 @@ impl<P: Protocol> Task for Writing<'_, P> {
         values.encode(&mut payload)?;
         Ok((*payload.data(), payload.length()))
     }
-}
-
-/// Says why a frame is none of the protocol.
-#[cold]
-fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Problem {
-    problem::<P>(if P::DATA_SELECTORS { classic(frame) } else { without_data(frame) })
 }
 
 /// Returns the bits of a status word, and those that have a name.

@@ -52,7 +52,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::DIRECTION.of(id) {
+        match Self::DIRECTION.byte(id) {
             0x0 => frame.to_module(),
             _ => frame.to_controller(),
         }

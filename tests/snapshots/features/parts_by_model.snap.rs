@@ -52,7 +52,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::TO_HOST.of(id) {
+        match Self::TO_HOST.byte(id) {
             0x0 => frame.to_module(),
             _ => frame.to_controller(),
         }

@@ -48,7 +48,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::OVEN.of(id) {
+        match Self::OVEN.byte(id) {
             0xF => frame.to_module(),
             _ => frame.to_neither(),
         }

@@ -48,7 +48,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::SENDER.of(id) {
+        match Self::SENDER.byte(id) {
             0x0 => frame.to_module(),
             _ => frame.to_controller(),
         }

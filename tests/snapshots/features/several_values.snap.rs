@@ -54,7 +54,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::FUNCTION.of(id) {
+        match Self::FUNCTION.byte(id) {
             0xB => frame.to_controller(),
             0xC => frame.to_module(),
             _ => frame.to_neither(),

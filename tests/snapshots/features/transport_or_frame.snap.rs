@@ -73,7 +73,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::SOURCE.of(id) {
+        match Self::SOURCE.byte(id) {
             0x56 => frame.to_module(),
             0xF4 => frame.to_controller(),
             _ => frame.to_neither(),

@@ -94,12 +94,12 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::SOURCE.of(id) {
-            0x56 => match Self::TARGET.of(id) {
+        match Self::SOURCE.byte(id) {
+            0x56 => match Self::TARGET.byte(id) {
                 0x56 => frame.to_neither(),
                 _ => frame.to_module(),
             },
-            0xF4 => match Self::TARGET.of(id) {
+            0xF4 => match Self::TARGET.byte(id) {
                 0xF4 => frame.to_neither(),
                 _ => frame.to_controller(),
             },

@@ -93,12 +93,12 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::TARGET.of(id) {
-            0xF0..=0xF8 => match Self::SOURCE.of(id) {
+        match Self::TARGET.byte(id) {
+            0xF0..=0xF8 => match Self::SOURCE.byte(id) {
                 0xF0..=0xF8 => frame.to_neither(),
                 _ => frame.to_controller(),
             },
-            _ => match Self::SOURCE.of(id) {
+            _ => match Self::SOURCE.byte(id) {
                 0xF0..=0xF8 => frame.to_module(),
                 _ => frame.to_neither(),
             },

@@ -108,7 +108,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::SENDER.of(id) {
+        match Self::SENDER.byte(id) {
             0x0 => frame.to_controller(),
             _ => frame.to_module(),
         }

@@ -116,11 +116,13 @@ fn head(heading: &Heading) -> TokenStream {
 fn outcome(heading: &Heading) -> TokenStream {
     match heading {
         Heading::Known { to_module, to_controller } => known(*to_module, *to_controller),
-        Heading::By { place, cases, otherwise } => {
+        Heading::By { place, is_byte, cases, otherwise } => {
             let arms = cases.iter().map(|(ranges, next)| (pattern(ranges), outcome(next)));
             let arms = arms.map(|(pattern, next)| quote!(#pattern => #next,));
             let otherwise = outcome(otherwise);
-            quote!(match Self::#place.of(id) { #(#arms)* _ => #otherwise })
+            // Processors take fewer instructions to test a byte.
+            let value = if *is_byte { quote!(byte(id)) } else { quote!(of(id)) };
+            quote!(match Self::#place.#value { #(#arms)* _ => #otherwise })
         }
         Heading::Tests { to_module, to_controller } => {
             let tests = tuple([to_module, to_controller].map(condition).into());

@@ -25,6 +25,8 @@ pub enum Heading {
     By {
         /// Place of the field.
         place: Ident,
+        /// Whether the field has at most eight bits.
+        is_byte: bool,
         /// Values of the field, and what they show.
         cases: Vec<(Vec<Range>, Self)>,
         /// What all other values show.
@@ -94,7 +96,8 @@ impl Planner<'_> {
         let (place, width) = field_place(self.protocol, field);
         let named = |ranges: Vec<(u32, u32)>| ranges.into_iter().map(|ends| range(ends, width)).collect();
         let cases = cases.into_iter().map(|(open, ranges)| Some((named(ranges), self.heading(&open)?)));
-        Some(Heading::By { place, cases: cases.collect::<Option<_>>()?, otherwise: Box::new(otherwise) })
+        let cases = cases.collect::<Option<_>>()?;
+        Some(Heading::By { place, is_byte: width <= 8, cases, otherwise: Box::new(otherwise) })
     }
 
     fn end(&mut self, open: &Open) -> Option<Heading> {
