@@ -22,7 +22,7 @@ use hand::{Message, Received, Target};
 pub const WORKLOAD: Workload = Workload {
     name: "infy",
     kinds: &[Kind { name: "every message", frames: frames::distinct }],
-    codecs: [measured::<Generated>(), measured::<Hand>(), measured::<Dbc>()],
+    codecs: &[measured::<Generated>(), measured::<Hand>(), measured::<Dbc>()],
 };
 
 const fn measured<C: Infy>() -> Measured {

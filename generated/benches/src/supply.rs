@@ -1,17 +1,19 @@
 //! Supplies that nobody makes, for six kinds of frames. `supply.yaml` describes them.
 
+pub mod binrw;
 pub mod by_hand;
 pub mod dbc;
 pub mod frames;
 pub mod generated;
 pub mod hand;
 
+use self::binrw::Binrw;
 use crate::Codec;
 use crate::work;
 use crate::workload::{Kind, Measured, Workload};
 use crate::{frame, steps};
 use by_hand::Hand;
-use dbc::Dbc;
+use dbc::{Dbc, OneAddress};
 use generated::Generated;
 
 // `names` calls a macro with the names of all registers of a real and of a whole number, and of all signals.
@@ -28,7 +30,13 @@ pub const WORKLOAD: Workload = Workload {
         Kind { name: "one of 40 registers", frames: |count| frames::of(5, count) },
         Kind { name: "one of 60 signals", frames: |count| frames::of(6, count) },
     ],
-    codecs: [measured::<Generated>(), measured::<Hand>(), measured::<Dbc>()],
+    codecs: &[
+        measured::<Generated>(),
+        measured::<Hand>(),
+        measured::<Dbc>(),
+        measured::<OneAddress>(),
+        measured::<Binrw>(),
+    ],
 };
 
 const fn measured<C: Codec>() -> Measured {

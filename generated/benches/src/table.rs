@@ -114,17 +114,28 @@ fn valgrind(command: &[OsString], passes: usize) -> (f64, usize) {
 
 /// Prints what criterion measured.
 fn times() {
-    let groups = Workload::ALL.iter().flat_map(|workload| workload.groups().map(|group| (workload.codecs, group)));
-    let rows: Vec<_> = groups.map(|(codecs, group)| (codecs.map(|codec| time(&group, codec.codec)), group)).collect();
-    if rows.iter().flat_map(|(times, _)| times).all(Option::is_none) {
-        return println!("Processor time: not measured; `cargo bench` measures it.");
+    let measured = Workload::ALL.each_ref().map(workload_times);
+    if !measured.contains(&true) {
+        println!("Processor time: not measured; `cargo bench` measures it.");
     }
-    let names = Workload::ALL[0].codecs.map(|codec| codec.codec);
-    println!("| processor time | {} |", names.join(" | "));
-    println!("|---|{}", "--:|".repeat(names.len()));
-    for (times, group) in rows {
-        println!("| {group} | {} |", times.map(|time| time.unwrap_or_else(|| "-".into())).join(" | "));
+}
+
+/// Prints what criterion measured of a workload, if it did.
+fn workload_times(workload: &Workload) -> bool {
+    let names: Vec<_> = workload.codecs.iter().map(|Measured { codec, .. }| *codec).collect();
+    let times = |group: &String| names.iter().map(|codec| time(group, codec)).collect::<Vec<_>>();
+    let rows: Vec<_> = workload.groups().map(|group| (times(&group), group)).collect();
+    let is_measured = rows.iter().flat_map(|(times, _)| times).any(Option::is_some);
+    if is_measured {
+        println!("| processor time | {} |", names.join(" | "));
+        println!("|---|{}", "--:|".repeat(names.len()));
+        for (times, group) in rows {
+            let cells: Vec<_> = times.into_iter().map(|time| time.unwrap_or_else(|| "-".into())).collect();
+            println!("| {group} | {} |", cells.join(" | "));
+        }
+        println!();
     }
+    is_measured
 }
 
 /// Returns what criterion measured.

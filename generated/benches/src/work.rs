@@ -64,7 +64,7 @@ pub fn each<T>(inputs: &[T], work: impl Fn(&T)) {
 /// Decodes frames in the loop that takes the values, the only place that decodes.
 pub const fn decode<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        with_each!(frames.to_vec(), |frame| {
+        with_each!(known::<C>(frames), |frame| {
             C::decode(frame).as_ref().map(C::take).ok();
         })
     };
@@ -74,7 +74,7 @@ pub const fn decode<C: Codec>() -> Work {
 /// Decodes frames by a function that is not inlined, as in a program that decodes in several places.
 pub const fn decode_by_call<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
-        with_each!(frames.to_vec(), |frame| {
+        with_each!(known::<C>(frames), |frame| {
             decoded::<C>(frame).as_ref().map(C::take).ok();
         })
     };
@@ -145,8 +145,12 @@ pub fn received<C: Codec>(frame: &Frame) -> C::Received {
     decoded::<C>(frame).expect("a frame of the protocol")
 }
 
+fn known<C: Codec>(frames: &[Frame]) -> Vec<Frame> {
+    frames.iter().map(C::known).collect()
+}
+
 fn values<C: Codec>(frames: &[Frame]) -> Vec<C::Values> {
-    frames.iter().map(|frame| C::to_values(&received::<C>(frame))).collect()
+    known::<C>(frames).iter().map(|frame| C::to_values(&received::<C>(frame))).collect()
 }
 
 fn requests<C: Codec>(frames: &[Frame]) -> Vec<C::Request> {

@@ -12,7 +12,7 @@ pub struct Workload {
     /// Kinds of frames, which are measured one after the other.
     pub kinds: &'static [Kind],
     /// The codecs, with the same works in the same order.
-    pub codecs: [Measured; 3],
+    pub codecs: &'static [Measured],
 }
 
 /// A kind of frames.

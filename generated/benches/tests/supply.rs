@@ -1,11 +1,12 @@
-//! The three codecs say the same, as far as they can: only then is it fair to measure them.
+//! The codecs say the same, as far as they can: only then is it fair to measure them.
 
 mod common;
 
 use canspec_benches::Codec;
 use canspec_benches::frame::Frame;
+use canspec_benches::supply::binrw::Binrw;
 use canspec_benches::supply::by_hand::Hand;
-use canspec_benches::supply::dbc::Dbc;
+use canspec_benches::supply::dbc::{Dbc, OneAddress};
 use canspec_benches::supply::generated::{Generated, code};
 use canspec_benches::supply::hand::{self, Message, Problem, Target};
 use canspec_benches::supply::{WORKLOAD, frames};
@@ -114,6 +115,36 @@ fn the_codec_of_the_dbc_comes_near() {
         assert_eq!(near.id, exact.id);
         assert_near(&near.message, &exact.message);
         assert!(encoded::<Dbc>(&frame).is_some(), "{frame:?}");
+    }
+}
+
+#[test]
+fn without_addresses_the_codec_of_the_dbc_says_and_builds_the_same() {
+    for frame in all() {
+        let known = OneAddress::known(&frame);
+        let message = OneAddress::to_hand(&OneAddress::decode(&known).expect("in the DBC"));
+        assert_eq!(message, Dbc::to_hand(&Dbc::decode(&frame).expect("in the DBC")).message, "{frame:?}");
+        let built = encoded::<OneAddress>(&known);
+        assert_eq!(built, encoded::<Dbc>(&known), "{frame:?}");
+        assert_eq!(requested::<OneAddress>(&known).and_then(Result::ok), built, "{frame:?}");
+    }
+}
+
+#[test]
+fn binrw_gives_the_values_of_the_codec_by_hand_and_builds_its_frames() {
+    for frame in all() {
+        let values = Binrw::to_hand(&Binrw::decode(&frame).expect("a frame of the protocol"));
+        assert_eq!(hand::decode(&frame), Ok(values), "{frame:?}");
+        assert_eq!(encoded::<Binrw>(&frame), Some(frame));
+        assert_eq!(requested::<Binrw>(&frame), requested::<Hand>(&frame));
+    }
+}
+
+#[test]
+fn binrw_refuses_the_frames_that_the_codec_by_hand_refuses() {
+    for frame in many(1, foreign) {
+        let decoded = Binrw::decode(&frame).ok().map(|received| Binrw::to_hand(&received));
+        assert_eq!(decoded, hand::decode(&frame).ok(), "{frame:?}");
     }
 }
 

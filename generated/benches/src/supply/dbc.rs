@@ -66,15 +66,69 @@ impl Codec for Dbc {
     }
 }
 
+/// The same without anything by hand, for frames with the one address that the DBC knows.
+pub struct OneAddress;
+
+impl Codec for OneAddress {
+    const NAME: &'static str = "dbc-codegen, one address";
+    type Received = Messages;
+    type Values = Message;
+    type Request = Message;
+    type ByHand = Message;
+
+    fn known(frame: &Frame) -> Frame {
+        Frame::of(known(frame.raw_id()), frame.bytes())
+    }
+
+    #[inline(always)]
+    fn decode(frame: &Frame) -> Result<Messages, impl Debug> {
+        Messages::from_can_message(frame.id(), frame.data())
+    }
+
+    #[inline(always)]
+    fn take(messages: &Messages) {
+        take(messages);
+    }
+
+    #[inline(always)]
+    fn encode(message: &Message) -> Option<impl embedded_can::Frame> {
+        let (command, data) = data(message).ok()?;
+        Some(Frame::of(known(command << 16), data))
+    }
+
+    #[inline(always)]
+    fn request(message: &Message) -> Option<impl embedded_can::Frame> {
+        Self::encode(message)
+    }
+
+    fn to_values(messages: &Messages) -> Message {
+        values(messages)
+    }
+
+    fn to_request(message: &Message) -> Option<Message> {
+        Some(*message)
+    }
+
+    fn to_hand(messages: &Messages) -> Message {
+        values(messages)
+    }
+}
+
+/// Returns the identifier of a message between the addresses that the DBC knows: of controller F0 and supply 00.
+#[inline(always)]
+fn known(id: u32) -> u32 {
+    id & 0x003F_0000 | 0x1500_00F0
+}
+
 const UNKNOWN: CanError = CanError::UnknownMessageId(Id::Extended(ExtendedId::ZERO));
 
-/// Recognises a frame by the addresses that the DBC knows: of controller F0 and supply 00.
+/// Recognises a frame by the addresses that the DBC knows.
 #[inline(always)]
 fn decode(frame: &Frame) -> Result<(u32, Messages), CanError> {
     let Id::Extended(id) = frame.id() else { return Err(UNKNOWN) };
     let id = id.as_raw();
     let [.., controller] = id.to_be_bytes();
-    let known = ExtendedId::new(id & 0x003F_0000 | 0x1500_00F0);
+    let known = ExtendedId::new(known(id));
     let known = known.filter(|_| is_controller(controller) && !frame.is_remote_frame()).ok_or(UNKNOWN)?;
     Ok((id, Messages::from_can_message(Id::Extended(known), frame.data())?))
 }
