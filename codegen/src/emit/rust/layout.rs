@@ -184,6 +184,15 @@ mod tests {
     }
 
     #[test]
+    fn generic_arguments_of_a_method_and_the_rest_of_a_struct_are_kept() {
+        let (long, longer) = (name(50), name(90));
+        stays("const A: B = c.d::<u8>(1).e::<F, G>();\n");
+        stays(&format!("const A: B = c\n    .{long}::<u8>()\n    .{long}::<E>();\n"));
+        stays("const A: B = C { d: 1, ..e };\n");
+        stays(&format!("const A: B = C {{\n    {longer}: 1,\n    d: {long},\n    ..e\n}};\n"));
+    }
+
+    #[test]
     fn operands_stand_on_a_line_each_with_the_operator_before_them() {
         let long = name(60);
         stays(&format!("fn a() -> b {{\n    {long}\n        | {long}\n        | c\n}}\n"));

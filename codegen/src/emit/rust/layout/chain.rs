@@ -3,7 +3,7 @@
 use syn::Expr;
 
 use super::brackets;
-use super::flat::{flat, member};
+use super::flat::{flat, member, method};
 use super::shape::{STEP, Shape, first_line, is_broken, line_break, width};
 
 /// A link of a chain.
@@ -24,7 +24,7 @@ impl Link<'_> {
         match self.expr {
             Expr::MethodCall(call) => {
                 let arguments: Option<Vec<_>> = call.args.iter().map(flat).collect();
-                Some(format!(".{}({})", call.method, arguments?.join(", ")))
+                Some(format!(".{}({})", method(call), arguments?.join(", ")))
             }
             Expr::Field(field) => Some(format!(".{}", member(&field.member))),
             _ => None,
@@ -33,7 +33,7 @@ impl Link<'_> {
 
     fn broken(&self, shape: Shape) -> Option<String> {
         let Expr::MethodCall(call) = self.expr else { return None };
-        brackets::broken(&format!(".{}", call.method), ['(', ')'], &call.args, shape)
+        brackets::broken(&format!(".{}", method(call)), ['(', ')'], &call.args, shape)
     }
 }
 

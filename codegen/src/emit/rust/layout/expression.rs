@@ -62,8 +62,12 @@ fn structure(known: &ExprStruct, shape: Shape) -> Option<String> {
     let nested = shape.nested();
     let fields: Option<Vec<_>> = known.fields.iter().map(|known| field(known, nested)).collect();
     let start = line_break(nested.indent);
-    let fields = fields?.join(&format!(",{start}"));
-    Some(format!("{} {{{start}{fields},{}}}", tokens(&known.path), line_break(shape.indent)))
+    let fields: String = fields?.iter().map(|field| format!("{start}{field},")).collect();
+    let rest = match &known.rest {
+        Some(rest) => format!("{start}..{}", nested.line().behind(2).rewrite(rest)?),
+        None => String::new(),
+    };
+    Some(format!("{} {{{fields}{rest}{}}}", tokens(&known.path), line_break(shape.indent)))
 }
 
 fn field(known: &FieldValue, shape: Shape) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use quote::ToTokens;
 use syn::punctuated::Punctuated;
-use syn::{Expr, FieldValue, Member, Pat, Path, RangeLimits, Stmt};
+use syn::{Expr, ExprMethodCall, FieldValue, Member, Pat, Path, RangeLimits, Stmt};
 
 /// Writes an expression on one line; `None` if it never stands on one.
 pub fn flat(expr: &Expr) -> Option<String> {
@@ -22,7 +22,7 @@ pub fn flat(expr: &Expr) -> Option<String> {
             format!("if {} {{ {} }} else {{ {} }}", flat(&known.cond)?, flat(then)?, flat(otherwise)?)
         }
         Expr::Index(index) => format!("{}[{}]", flat(&index.expr)?, flat(&index.index)?),
-        Expr::MethodCall(call) => format!("{}.{}({})", flat(&call.receiver)?, call.method, all(&call.args)?),
+        Expr::MethodCall(call) => format!("{}.{}({})", flat(&call.receiver)?, method(call), all(&call.args)?),
         Expr::Paren(paren) => format!("({})", flat(&paren.expr)?),
         Expr::Path(known) if known.qself.is_none() => path(&known.path),
         Expr::Range(range) => {
@@ -37,7 +37,8 @@ pub fn flat(expr: &Expr) -> Option<String> {
             Some(value) => format!("return {}", flat(value)?),
         },
         Expr::Struct(known) => {
-            let fields: Option<Vec<_>> = known.fields.iter().map(field).collect();
+            let rest = known.rest.iter().map(|rest| Some(format!("..{}", flat(rest)?)));
+            let fields: Option<Vec<_>> = known.fields.iter().map(field).chain(rest).collect();
             format!("{} {{ {} }}", path(&known.path), fields?.join(", "))
         }
         Expr::Try(tried) => format!("{}?", flat(&tried.expr)?),
@@ -56,6 +57,12 @@ fn all<P>(items: &Punctuated<Expr, P>) -> Option<String> {
 fn field(known: &FieldValue) -> Option<String> {
     let (name, value) = (member(&known.member), flat(&known.expr)?);
     Some(if known.colon_token.is_some() { format!("{name}: {value}") } else { name })
+}
+
+/// Writes the name of a method with its generic arguments.
+pub fn method(call: &ExprMethodCall) -> String {
+    let arguments = call.turbofish.as_ref().map(|known| tokens(known).replace(" ,", ","));
+    format!("{}{}", call.method, arguments.unwrap_or_default())
 }
 
 /// Writes the name or the number of a field.
