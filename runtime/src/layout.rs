@@ -6,6 +6,9 @@ use crate::{AnySignal, Data, Error, Frame, Payload};
 pub trait Layout: Sized + 'static {
     /// The signals, by first byte.
     const SIGNALS: AnySignals;
+    /// The data bits that the document reserves. Requests send zeros in them, unless their struct says something else.
+    /// [`Received::reserved`](crate::Received::reserved) returns those that are set.
+    const RESERVED: Data = [0; 8];
     /// Reads the values from the data of such a frame.
     const DECODE: Decode<Self>;
     /// The numbers of data bytes that such a frame can have, if there are several.

@@ -117,6 +117,10 @@ pub use timing::{Time, Timing};
 #[macro_export]
 macro_rules! include_protocol {
     ($name:literal) => {
-        ::core::include!(::core::concat!(::core::env!("OUT_DIR"), "/", $name, ".rs"));
+        #[allow(clippy::inline_always, clippy::missing_errors_doc, reason = "it is generated")]
+        mod generated {
+            ::core::include!(::core::concat!(::core::env!("OUT_DIR"), "/", $name, ".rs"));
+        }
+        pub use generated::*;
     };
 }

@@ -31,5 +31,6 @@ fn path_in(folder: &Path) -> PathBuf {
 fn module(generated: &Generated) -> String {
     let Generated { name, manual, .. } = generated;
     let manual = manual.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
-    format!("pub mod {name} {{\n{manual}\n\n    include!(\"{name}.rs\");\n}}\n")
+    let lints = "clippy::inline_always, clippy::missing_errors_doc";
+    format!("#[allow({lints})]\npub mod {name} {{\n{manual}\n\n    include!(\"{name}.rs\");\n}}\n")
 }

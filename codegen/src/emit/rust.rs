@@ -197,7 +197,7 @@ errata:
         let code = super::rust(&outcome.protocol.expect("a spec without errors"), &super::Options::default());
         for part in [
             "/// Set. Section 5.\n///\n/// The reply carries the values now in effect.\npub const SET_ACCESS",
-            "    /// Builds the request [`set`](SET_ACCESS) with these values.\n",
+            "    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits,",
             "    /// One heater: `0x00..=0x3F`. Section 4.\n    ///\n    /// Heaters of a group too.\n    Module(u8),\n",
             "steps of 10 W.\n    ///\n    /// Never above the rating.\n    pub power_w: f64,\n",
             "    /// Mode: byte 2.\n    pub mode: Mode",

@@ -2,7 +2,7 @@
 
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
-    Air, Error, Failure, Frame, Hours, Identifier, Message, Model, Power, Problem, Replies, Request, SetBlades,
+    Air, Error, Failure, Frame, Hours, Identifier, Layout, Message, Model, Power, Problem, Replies, Request, SetBlades,
     SetLamp, SetSpeed, Target, Text,
 };
 
@@ -20,7 +20,7 @@ fn a_low_byte_stands_first_and_a_sign_is_kept() {
 fn an_angle_in_the_midst_of_a_word_leaves_the_other_bits_alone() {
     let request = SetBlades { angle: -0.2 }.set(Target::Fan(1));
     assert_eq!(sent(request), frame(0x0191_01E1, &[2, 0xE0, 0x3F, 0, 0]));
-    assert_eq!(SetBlades::RESERVED, [0, 0x0F, 0xC0, 0xFF, 0xFF, 0, 0, 0]);
+    assert_eq!(<SetBlades as Layout>::RESERVED, [0, 0x0F, 0xC0, 0xFF, 0xFF, 0, 0, 0]);
     let noisy = decoded(&frame(0x0191_01E1, &[2, 0xEF, 0xFF, 0, 0x80]));
     assert_eq!(noisy.request(), Some(&Message::SetBlades(SetBlades { angle: -0.2 })));
     assert_eq!(noisy.reserved(), [0, 0x0F, 0xC0, 0, 0x80, 0, 0, 0]);

@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -152,8 +151,6 @@ impl Cells {
         Signal::new("voltage_2", Place::bytes(5, 4).bits(11, 0)).unit("V").scale(1, 100);
     /// The signal `group_2`, to read or write it alone, or to ask for its limits.
     pub const GROUP_2: Signal<Group> = Signal::new("group_2", Place::byte(5).bits(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("cells", FRAME.id(Identifier::COMMAND, 0x12)).length(4);
 }
@@ -161,6 +158,7 @@ impl Cells {
 impl Layout for Cells {
     const SIGNALS: AnySignals =
         &[&Self::VOLTAGE_0, &Self::GROUP_0, &Self::VOLTAGE_1, &Self::GROUP_1, &Self::VOLTAGE_2, &Self::GROUP_2];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[4, 6];
 
@@ -180,7 +178,6 @@ impl Layout for Cells {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
@@ -225,8 +222,6 @@ impl State {
     /// The signal `current_2`, to read or write it alone, or to ask for its limits.
     pub const CURRENT_2: Signal<i16, f64> =
         Signal::new("current_2", Place::bytes(5, 6)).unit("A").scale(1, 10).specials(&[(32_767, "unlimited")]);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xC9, 0x27, 0xFF, 0x00, 0x00, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x13));
 }
@@ -234,12 +229,12 @@ impl State {
 impl Layout for State {
     const SIGNALS: AnySignals =
         &[&Self::CURRENT_1, &Self::VALVE_1, &Self::VALVE_2, &Self::VALVE_3, &Self::VALVE_4, &Self::CURRENT_2];
+    const RESERVED: Data = [0x00, 0x00, 0xC9, 0x27, 0xFF, 0x00, 0x00, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         current_a: [Self::CURRENT_1.decode(data), Self::CURRENT_2.decode(data)],
         valve: [Self::VALVE_1.get(data), Self::VALVE_2.get(data), Self::VALVE_3.get(data), Self::VALVE_4.get(data)],
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT_1.encode(self.current_a[0], payload)?;
@@ -270,16 +265,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

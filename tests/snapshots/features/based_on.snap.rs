@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -75,7 +74,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -132,18 +130,13 @@ pub struct Speed {
     pub value_rpm: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("rpm").scale(10, 1);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.id(Identifier::COMMAND, 0x002)).length(2);
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -152,9 +145,9 @@ impl Speed {
 
 impl Layout for Speed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_rpm, payload)
@@ -171,18 +164,13 @@ pub struct Temperature {
     pub value_c: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Temperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8, f64> = Signal::new("value", Place::byte(1)).unit("°C").offset(-40, 1);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("temperature", FRAME.id(Identifier::COMMAND, 0x003)).length(2);
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -191,9 +179,9 @@ impl Temperature {
 
 impl Layout for Temperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
@@ -223,16 +211,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

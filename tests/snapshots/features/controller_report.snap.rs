@@ -41,7 +41,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -72,7 +71,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -140,20 +138,16 @@ pub struct Delivered {
     pub voltage_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Delivered {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> =
         Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(0.0, 1000.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange =
         CHARGER_CYCLE_ACCESS.of("delivered", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -162,9 +156,9 @@ impl Delivered {
 
 impl Layout for Delivered {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -183,8 +177,6 @@ pub struct Demanded {
 impl Demanded {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `vehicle_cycle`, for filters and blank frames of it.
     pub const VEHICLE_CYCLE: Exchange =
         VEHICLE_CYCLE_ACCESS.of("demanded", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
@@ -192,9 +184,9 @@ impl Demanded {
 
 impl Layout for Demanded {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -220,16 +212,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

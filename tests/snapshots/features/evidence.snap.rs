@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -79,7 +78,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -157,7 +155,6 @@ pub struct Battery {
     pub level_percent: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Battery {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
@@ -165,14 +162,10 @@ impl Battery {
     pub const CURRENT: Signal<i16, f64> = Signal::new("current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The signal `level`, to read or write it alone, or to ask for its limits.
     pub const LEVEL: Signal<u8> = Signal::new("level", Place::byte(4)).unit("%");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("battery", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -181,13 +174,13 @@ impl Battery {
 
 impl Layout for Battery {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::LEVEL];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
         current_a: Self::CURRENT.decode(data),
         level_percent: Self::LEVEL.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -215,16 +208,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -63,7 +63,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -200,8 +199,6 @@ impl EnginePart {
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(0).bits(7, 5));
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =
         REPORT_ACCESS.of("engine", FRAME.id(Identifier::FORMAT, 0xF2).id(Identifier::GROUP, 0x01));
@@ -209,10 +206,11 @@ impl EnginePart {
 
 impl Layout for EnginePart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -302,8 +300,6 @@ impl CellsPart {
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(0).bits(7, 5));
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =
         REPORT_ACCESS.of("cells", FRAME.id(Identifier::FORMAT, 0xFF).id(Identifier::GROUP, 0x01));
@@ -311,10 +307,11 @@ impl CellsPart {
 
 impl Layout for CellsPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -357,16 +354,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -60,7 +60,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -97,7 +96,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -182,14 +180,11 @@ pub struct All {
     pub power: Option<Power>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl All {
     /// The access `scan`, for filters and blank frames of it.
     pub const SCAN: Exchange = SCAN_ACCESS.of("all", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request [`scan`](SCAN_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`scan`](SCAN_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn scan(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SCAN.inlined_request_to(route, &())
@@ -232,17 +227,15 @@ pub struct Heat {
 impl Heat {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i16> = Signal::new("value", Place::bytes(1, 2)).unit("°C");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `scan` in the set `all`, for filters and blank frames of it.
     pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("heat", FRAME.data(SIGNAL_SELECTOR.place, 0x01));
 }
 
 impl Layout for Heat {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_c, payload)
@@ -261,17 +254,15 @@ pub struct Power {
 impl Power {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(1, 2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `scan` in the set `all`, for filters and blank frames of it.
     pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("power", FRAME.data(SIGNAL_SELECTOR.place, 0x02));
 }
 
 impl Layout for Power {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -299,16 +290,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

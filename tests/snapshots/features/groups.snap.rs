@@ -37,7 +37,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -153,8 +152,6 @@ impl State {
     pub const WARNINGS_CELL_2: Signal<u8> = Signal::new("warnings_cell_2", Place::byte(2).bit(3));
     /// The signal `warnings_level`, to read or write it alone, or to ask for its limits.
     pub const WARNINGS_LEVEL: Signal<u8, f64> = Signal::new("warnings_level", Place::byte(3)).unit("V").scale(1, 2);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME).length(4);
 }
@@ -170,6 +167,7 @@ impl Layout for State {
         &Self::WARNINGS_CELL_2,
         &Self::WARNINGS_LEVEL,
     ];
+    const RESERVED: Data = [0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         alarms_level_v: Self::ALARMS_LEVEL.decode(data),
         alarms_pack: Self::ALARMS_PACK.get(data),
@@ -179,7 +177,6 @@ impl Layout for State {
         warnings_level_v: Self::WARNINGS_LEVEL.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ALARMS_LEVEL.encode(self.alarms_level_v, payload)?;
@@ -210,16 +207,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

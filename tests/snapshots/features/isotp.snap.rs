@@ -69,7 +69,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -130,7 +129,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -316,9 +314,8 @@ impl Maker {
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("maker", FRAME.data(ITEM_SELECTOR.place, 0x10));
 
-    /// Returns what sends the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Returns what sends the request [`read`](READ_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<transfers::Sender<'static, Tp>, Error> {
         Self::READ.bare_to(route)
     }
@@ -348,9 +345,8 @@ impl Restart {
     /// The access `reset`, for filters and blank frames of it.
     pub const RESET: Exchange = RESET_ACCESS.of("restart", FRAME);
 
-    /// Returns what sends the request [`reset`](RESET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Returns what sends the request [`reset`](RESET_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     pub fn reset(route: impl Into<Route<Target>>) -> Result<transfers::Sender<'static, Tp>, Error> {
         Self::RESET.bare_to(route)
     }
@@ -369,7 +365,6 @@ pub struct TpSingleFrame {
     pub data: [Option<Bytes<1>>; 7],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpSingleFrame {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u8> = Signal::new("size", Place::byte(0).bits(3, 0)).limits(1, 7);
@@ -387,8 +382,6 @@ impl TpSingleFrame {
     pub const DATA_6: Signal<Bytes<1>> = Signal::new("data_6", Place::byte(6));
     /// The signal `data_7`, to read or write it alone, or to ask for its limits.
     pub const DATA_7: Signal<Bytes<1>> = Signal::new("data_7", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
@@ -400,9 +393,8 @@ impl TpSingleFrame {
         .length(2)
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -420,6 +412,7 @@ impl Layout for TpSingleFrame {
         &Self::DATA_6,
         &Self::DATA_7,
     ];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[2, 3, 4, 5, 6, 7, 8];
 
@@ -439,7 +432,6 @@ impl Layout for TpSingleFrame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
@@ -483,14 +475,11 @@ pub struct TpFirstFrame {
     pub data: Bytes<6>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpFirstFrame {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(0, 1).bits(11, 0)).limits(8, 4095);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
@@ -500,9 +489,8 @@ impl TpFirstFrame {
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -511,9 +499,9 @@ impl TpFirstFrame {
 
 impl Layout for TpFirstFrame {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::DATA];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { size: Self::SIZE.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -536,7 +524,6 @@ pub struct TpConsecutiveFrame {
     pub data: [Option<Bytes<1>>; 7],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpConsecutiveFrame {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0).bits(3, 0));
@@ -554,8 +541,6 @@ impl TpConsecutiveFrame {
     pub const DATA_6: Signal<Bytes<1>> = Signal::new("data_6", Place::byte(6));
     /// The signal `data_7`, to read or write it alone, or to ask for its limits.
     pub const DATA_7: Signal<Bytes<1>> = Signal::new("data_7", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
@@ -567,9 +552,8 @@ impl TpConsecutiveFrame {
         .length(2)
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -587,6 +571,7 @@ impl Layout for TpConsecutiveFrame {
         &Self::DATA_6,
         &Self::DATA_7,
     ];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[2, 3, 4, 5, 6, 7, 8];
 
@@ -606,7 +591,6 @@ impl Layout for TpConsecutiveFrame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
@@ -658,7 +642,6 @@ pub struct TpFlowControl {
     pub padding: Option<Bytes<5>>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpFlowControl {
     /// The signal `status`, to read or write it alone, or to ask for its limits.
     pub const STATUS: Signal<TpFlowControlStatus> = Signal::new("status", Place::byte(0).bits(3, 0));
@@ -668,8 +651,6 @@ impl TpFlowControl {
     pub const SEPARATION: Signal<u8> = Signal::new("separation", Place::byte(2));
     /// The signal `padding`, to read or write it alone, or to ask for its limits.
     pub const PADDING: Signal<Bytes<5>> = Signal::new("padding", Place::bytes(3, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
@@ -681,9 +662,8 @@ impl TpFlowControl {
         .length(3)
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -692,6 +672,7 @@ impl TpFlowControl {
 
 impl Layout for TpFlowControl {
     const SIGNALS: AnySignals = &[&Self::STATUS, &Self::BLOCK, &Self::SEPARATION, &Self::PADDING];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[3, 8];
 
@@ -705,7 +686,6 @@ impl Layout for TpFlowControl {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(3);
@@ -767,16 +747,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

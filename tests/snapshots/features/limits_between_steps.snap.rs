@@ -41,7 +41,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -71,7 +70,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -134,7 +132,6 @@ pub struct SetLimit {
     pub cold_c: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLimit {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u8, f64> =
@@ -152,14 +149,11 @@ impl SetLimit {
         Signal::new("cold", Place::byte(3)).unit("°C").scale(1, 4).limits(-10.1, 10.1).specials(&[(-128, "unknown")]);
     /// The value of `cold` that stands for `unknown`.
     pub const COLD_UNKNOWN: f64 = -32.0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit", FRAME.id(Identifier::COMMAND, 0x003));
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -168,6 +162,7 @@ impl SetLimit {
 
 impl Layout for SetLimit {
     const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::INTERVAL, &Self::SLOPE, &Self::COLD];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         current_a: Self::CURRENT.decode(data),
         interval_s: Self::INTERVAL.get(data),
@@ -175,7 +170,6 @@ impl Layout for SetLimit {
         cold_c: Self::COLD.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.encode(self.current_a, payload)?;
@@ -194,18 +188,14 @@ pub struct SetTotal {
     pub total: u64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotal {
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u64> = Signal::new("total", Place::bytes(0, 7)).limits(1, 9_007_199_254_740_995);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_total", FRAME.id(Identifier::COMMAND, 0x004));
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -214,9 +204,9 @@ impl SetTotal {
 
 impl Layout for SetTotal {
     const SIGNALS: AnySignals = &[&Self::TOTAL];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { total: Self::TOTAL.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TOTAL.put(self.total, payload)
@@ -242,16 +232,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -41,7 +41,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -71,7 +70,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -160,8 +158,6 @@ pub struct SupplyAc {
 impl SupplyAc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =
         REPORT_ACCESS.of("supply_ac", FRAME.id(Identifier::COMMAND, 0x001)).length(2).models(&[Model::P10a as u8]);
@@ -169,9 +165,9 @@ impl SupplyAc {
 
 impl Layout for SupplyAc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -190,8 +186,6 @@ pub struct SupplyDc {
 impl SupplyDc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =
         REPORT_ACCESS.of("supply_dc", FRAME.id(Identifier::COMMAND, 0x001)).length(2).models(&[Model::P48vDc as u8]);
@@ -199,9 +193,9 @@ impl SupplyDc {
 
 impl Layout for SupplyDc {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -227,24 +221,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

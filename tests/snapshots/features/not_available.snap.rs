@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -79,7 +78,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -222,7 +220,6 @@ pub struct Limits {
     pub day: Option<u8>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Limits {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(1, 0))
@@ -242,14 +239,11 @@ impl Limits {
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(4));
     /// The signal `day`, to read or write it alone, or to ask for its limits.
     pub const DAY: Signal<u8> = Signal::new("day", Place::byte(5)).specials(&[(255, "not_available")]).absent();
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xF8, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x12)).length(5);
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -259,6 +253,7 @@ impl Limits {
 impl Layout for Limits {
     const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::TEMPERATURE, &Self::LAMP, &Self::READY, &Self::COUNTER, &Self::DAY];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xF8, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[5, 6];
 
@@ -274,7 +269,6 @@ impl Layout for Limits {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(5);
@@ -307,16 +301,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

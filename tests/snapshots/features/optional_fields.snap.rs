@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -79,7 +78,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -174,14 +172,13 @@ impl State {
     pub const HOURS: Signal<u16> = Signal::new("hours", Place::bytes(4, 5)).unit("h");
     /// The signal `cycles`, to read or write it alone, or to ask for its limits.
     pub const CYCLES: Signal<u8> = Signal::new("cycles", Place::byte(6));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x12)).length(3);
 }
 
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::PHASE, &Self::ALLOWED, &Self::HOURS, &Self::CYCLES];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[3, 4, 7];
 
@@ -196,7 +193,6 @@ impl Layout for State {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(3);
@@ -226,20 +222,16 @@ pub struct Limit {
     pub ramp_s: Option<u8>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Limit {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u8> = Signal::new("current", Place::byte(0)).unit("A").limits(0, 100);
     /// The signal `ramp`, to read or write it alone, or to ask for its limits.
     pub const RAMP: Signal<u8> = Signal::new("ramp", Place::byte(1)).unit("s");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("limit", FRAME.id(Identifier::COMMAND, 0x13)).length(1);
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -248,6 +240,7 @@ impl Limit {
 
 impl Layout for Limit {
     const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::RAMP];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[1, 2];
 
@@ -256,7 +249,6 @@ impl Layout for Limit {
         Self { current_a: Self::CURRENT.get(data), ramp_s: Self::RAMP.get_some(data, length) }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
@@ -289,16 +281,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -79,7 +78,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -213,18 +211,13 @@ pub struct Label {
     pub value: LabelValue,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Label {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<LabelValue> = Signal::new("value", Place::bytes(1, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -233,9 +226,9 @@ impl Label {
 
 impl Layout for Label {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -261,16 +254,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -79,7 +78,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -184,16 +182,13 @@ pub struct Label {
     pub hours_h: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Label {
     /// The signal `serial`, to read or write it alone, or to ask for its limits.
     pub const SERIAL: LongSignal<Text<8>> = LongSignal::new(0, Signal::new("serial", Place::bytes(0, 7)));
     /// The signal `hours`, to read or write it alone, or to ask for its limits.
     pub const HOURS: LongSignal<u32> = LongSignal::new(8, Signal::new("hours", Place::bytes(0, 3)).unit("h"));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
         LabelPart::READ.inlined_request_to(route, &())
@@ -226,8 +221,6 @@ impl LabelPart {
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 4);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<3>> = Signal::new("data", Place::bytes(1, 3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
         .of("label", FRAME.id(Identifier::COMMAND, 0x03))
@@ -237,9 +230,9 @@ impl LabelPart {
 
 impl Layout for LabelPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -280,24 +273,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

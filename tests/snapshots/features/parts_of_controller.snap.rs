@@ -41,7 +41,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -71,7 +70,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -136,9 +134,8 @@ impl Label {
     /// The signal `text`, to read or write it alone, or to ask for its limits.
     pub const TEXT: LongText<Text<17>> = LongText::new(3, Signal::new("text", Place::byte(0))).at_least(0);
 
-    /// Builds the frames of the report [`tell`](TELL_ACCESS) with these values, in parts.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the frames of the report [`tell`](TELL_ACCESS) with these values, in parts. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<parts::Frames<Self>, Error> {
         LabelPart::TELL.parts_to(route, self)
     }
@@ -180,18 +177,16 @@ impl LabelPart {
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(0).bits(7, 5));
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x0E));
 }
 
 impl Layout for LabelPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.keep(self.part, payload)?;
@@ -232,16 +227,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -57,7 +57,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -91,7 +90,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -203,18 +201,13 @@ pub struct State {
     pub steps: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl State {
     /// The signal `steps`, to read or write it alone, or to ask for its limits.
     pub const STEPS: Signal<u8> = Signal::new("steps", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -223,9 +216,9 @@ impl State {
 
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::STEPS];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { steps: Self::STEPS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STEPS.put(self.steps, payload)
@@ -244,7 +237,6 @@ pub struct Program {
     pub temperature_c: Elements<f64, 6>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Program {
     /// The signal `hold`, to read or write it alone, or to ask for its limits.
     pub const HOLD: LongSignal<u8> = LongSignal::new(0, Signal::new("hold", Place::byte(0)).unit("min").limits(1, 60));
@@ -259,17 +251,14 @@ impl Program {
     )
     .every(2);
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<ProgramPart>, Error> {
         ProgramPart::READ.inlined_request_to(route, &())
     }
 
-    /// Builds the frames of the request [`set`](SET_ACCESS) with these values, in parts.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the frames of the request [`set`](SET_ACCESS) with these values, in parts. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<parts::Frames<Self>, Error> {
         ProgramPart::SET.parts_to(route, self)
     }
@@ -308,8 +297,6 @@ impl ProgramPart {
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(1, 3);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(1, 6));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("program", FRAME.id(Identifier::COMMAND, 0x02));
     /// The access `set`, for filters and blank frames of it.
@@ -318,9 +305,9 @@ impl ProgramPart {
 
 impl Layout for ProgramPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.keep(self.part, payload)?;
@@ -366,24 +353,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -45,7 +45,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -104,7 +103,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -230,19 +228,15 @@ pub struct Limits {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Limits {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16, f64> =
         Signal::new("current", Place::bytes(0, 1)).unit("A").scale(1, 10).limits(0.0, 250.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `offer`, for filters and blank frames of it.
     pub const OFFER: Exchange = OFFER_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x0001)).length(2);
 
-    /// Builds the request [`offer`](OFFER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`offer`](OFFER_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn offer(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::OFFER.inlined_request_to(route, self)
@@ -251,9 +245,9 @@ impl Limits {
 
 impl Layout for Limits {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.encode(self.current_a, payload)
@@ -277,16 +271,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -47,7 +47,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -77,7 +76,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -145,18 +143,13 @@ pub struct Voltage {
     pub value_v: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -165,9 +158,9 @@ impl Voltage {
 
 impl Layout for Voltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_v, payload)
@@ -186,20 +179,16 @@ pub struct Revision {
     pub software: u16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Revision {
     /// The signal `hardware`, to read or write it alone, or to ask for its limits.
     pub const HARDWARE: Signal<u16> = Signal::new("hardware", Place::bytes(4, 5));
     /// The signal `software`, to read or write it alone, or to ask for its limits.
     pub const SOFTWARE: Signal<u16> = Signal::new("software", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("revision", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
 
-    /// Builds the request [`read`](READ_ACCESS_2).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
+    /// addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -208,9 +197,9 @@ impl Revision {
 
 impl Layout for Revision {
     const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::SOFTWARE];
+    const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { hardware: Self::HARDWARE.get(data), software: Self::SOFTWARE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HARDWARE.put(self.hardware, payload)?;
@@ -241,16 +230,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

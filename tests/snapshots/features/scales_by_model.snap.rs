@@ -41,7 +41,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -71,7 +70,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -177,7 +175,6 @@ pub struct SetOutput {
     pub temperature_raw: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(0, 1))
@@ -225,22 +222,17 @@ impl SetOutput {
         }
     }
 
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -252,9 +244,7 @@ impl SetOutput {
         Self::current_on(model)?.physical_of(self.current_raw)
     }
 
-    /// Sets `current` to a number of a device model.
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
+    /// Sets `current` to a number of a device model. Refuses one without a scale, and values outside its limits.
     pub fn set_current(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::current_on(model).ok_or(Self::CURRENT.without_scale("set_output"))?;
         self.current_raw = signal.raw_of(value, "set_output")?;
@@ -267,9 +257,7 @@ impl SetOutput {
         Self::temperature_on(model)?.physical_of(self.temperature_raw)
     }
 
-    /// Sets `temperature` to a number of a device model.
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
+    /// Sets `temperature` to a number of a device model. Refuses one without a scale, and values outside its limits.
     pub fn set_temperature(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::temperature_on(model).ok_or(Self::TEMPERATURE.without_scale("set_output"))?;
         self.temperature_raw = signal.raw_of(value, "set_output")?;
@@ -277,11 +265,9 @@ impl SetOutput {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetOutput> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         SetOutput::SET.inlined_request_within(self.model, route, &self.values)
@@ -290,10 +276,10 @@ impl Within<SetOutput> {
 
 impl Layout for SetOutput {
     const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::TEMPERATURE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { current_raw: Self::CURRENT.get(data), temperature_raw: Self::TEMPERATURE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_raw, payload)?;
@@ -318,24 +304,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

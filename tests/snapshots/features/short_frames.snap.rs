@@ -44,7 +44,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -85,7 +84,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -178,18 +176,14 @@ pub struct KeepAlive {
     pub outputs: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<u8> = Signal::new("outputs", Place::byte(1));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
-    /// Builds the request [`tell`](TELL_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.inlined_request_to(route, self)
@@ -198,9 +192,9 @@ impl KeepAlive {
 
 impl Layout for KeepAlive {
     const SIGNALS: AnySignals = &[&Self::OUTPUTS];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::OUTPUTS.put(self.outputs, payload)
@@ -219,20 +213,15 @@ pub struct Drift {
     pub turns_rpm: i16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Drift {
     /// The signal `drift`, to read or write it alone, or to ask for its limits.
     pub const DRIFT: Signal<i32, f64> = Signal::new("drift", Place::bytes(3, 1)).unit("V").scale(1, 1024);
     /// The signal `turns`, to read or write it alone, or to ask for its limits.
     pub const TURNS: Signal<i16> = Signal::new("turns", Place::bytes(5, 4)).unit("rpm");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `ask`, for filters and blank frames of it.
     pub const ASK: Exchange = ASK_ACCESS.of("drift", FRAME).length(6);
 
-    /// Builds the request [`ask`](ASK_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`ask`](ASK_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn ask(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::ASK.inlined_request_to(route, &())
@@ -241,9 +230,9 @@ impl Drift {
 
 impl Layout for Drift {
     const SIGNALS: AnySignals = &[&Self::DRIFT, &Self::TURNS];
+    const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { drift_v: Self::DRIFT.decode(data), turns_rpm: Self::TURNS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::DRIFT.encode(self.drift_v, payload)?;
@@ -272,16 +261,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

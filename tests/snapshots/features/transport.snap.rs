@@ -66,7 +66,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -107,7 +106,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -275,10 +273,8 @@ impl Profile {
     pub const OF_CHARGER: Exchange = OF_CHARGER_ACCESS.of("profile", FRAME.id(Identifier::FORMAT, 0x16));
 
     /// Returns what sends the report [`of_charger`](OF_CHARGER_ACCESS) with these values. The data are
-    /// written to `buffer`, for which `LONGEST` bytes are enough.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
-    /// with too few bytes.
+    /// written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
+    /// other addressing modes, undocumented addresses, and a buffer with too few bytes.
     pub fn of_charger<'a>(
         &self,
         route: impl Into<Route<Target>>,
@@ -316,7 +312,6 @@ pub struct TpRequestToSend {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpRequestToSend {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -326,8 +321,6 @@ impl TpRequestToSend {
     pub const MOST: Signal<u8> = Signal::new("most", Place::byte(4)).limits(1, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
@@ -337,9 +330,8 @@ impl TpRequestToSend {
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -348,6 +340,8 @@ impl TpRequestToSend {
 
 impl Layout for TpRequestToSend {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         size: Self::SIZE.get(data),
         packets: Self::PACKETS.get(data),
@@ -355,7 +349,6 @@ impl Layout for TpRequestToSend {
         group: Self::GROUP.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -380,7 +373,6 @@ pub struct TpClearToSend {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpClearToSend {
     /// The signal `packets`, to read or write it alone, or to ask for its limits.
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(1));
@@ -388,8 +380,6 @@ impl TpClearToSend {
     pub const NEXT: Signal<u8> = Signal::new("next", Place::byte(2));
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
@@ -401,9 +391,8 @@ impl TpClearToSend {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -412,10 +401,11 @@ impl TpClearToSend {
 
 impl Layout for TpClearToSend {
     const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PACKETS.put(self.packets, payload)?;
@@ -437,7 +427,6 @@ pub struct TpEndOfMessage {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpEndOfMessage {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -445,8 +434,6 @@ impl TpEndOfMessage {
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(3)).limits(2, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
@@ -458,9 +445,8 @@ impl TpEndOfMessage {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -469,10 +455,11 @@ impl TpEndOfMessage {
 
 impl Layout for TpEndOfMessage {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -494,7 +481,6 @@ pub struct TpBroadcast {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpBroadcast {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -502,8 +488,6 @@ impl TpBroadcast {
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(3)).limits(2, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
@@ -515,9 +499,8 @@ impl TpBroadcast {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -526,10 +509,11 @@ impl TpBroadcast {
 
 impl Layout for TpBroadcast {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -549,14 +533,11 @@ pub struct TpAbort {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpAbort {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(1));
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
@@ -568,9 +549,8 @@ impl TpAbort {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -579,9 +559,10 @@ impl TpAbort {
 
 impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::REASON.put(self.reason, payload)?;
@@ -600,14 +581,11 @@ pub struct TpData {
     pub data: Bytes<7>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpData {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0)).limits(1, 255);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
@@ -617,9 +595,8 @@ impl TpData {
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -628,9 +605,10 @@ impl TpData {
 
 impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
@@ -684,16 +662,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

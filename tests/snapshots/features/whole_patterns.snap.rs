@@ -40,7 +40,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -67,7 +66,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -131,18 +129,14 @@ pub struct Wanted {
     pub current_a: u16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Wanted {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(1, 0)).unit("A").limits(0, 200);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `demand`, for filters and blank frames of it.
     pub const DEMAND: Exchange = DEMAND_ACCESS.of("wanted", FRAME.id(Identifier::ID, 0x305));
 
-    /// Builds the request [`demand`](DEMAND_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`demand`](DEMAND_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn demand(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::DEMAND.inlined_request_to(route, self)
@@ -151,9 +145,9 @@ impl Wanted {
 
 impl Layout for Wanted {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_a, payload)
@@ -172,17 +166,15 @@ pub struct Limits {
 impl Limits {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(1, 0)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `supply`, for filters and blank frames of it.
     pub const SUPPLY: Exchange = SUPPLY_ACCESS.of("limits", FRAME.id(Identifier::ID, 0x351));
 }
 
 impl Layout for Limits {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)
@@ -199,18 +191,14 @@ pub struct Cycles {
     pub count: u16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cycles {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u16> = Signal::new("count", Place::bytes(2, 1));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `query`, for filters and blank frames of it.
     pub const QUERY: Exchange = QUERY_ACCESS.of("cycles", FRAME);
 
-    /// Builds the request [`query`](QUERY_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`query`](QUERY_ACCESS). Refuses other addressing modes and undocumented
+    /// addresses.
     #[inline(always)]
     pub fn query(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::QUERY.inlined_request_to(route, &())
@@ -219,9 +207,9 @@ impl Cycles {
 
 impl Layout for Cycles {
     const SIGNALS: AnySignals = &[&Self::COUNT];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
@@ -251,16 +239,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -63,7 +63,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -117,7 +116,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -835,7 +833,6 @@ pub struct PackValues {
     pub state_of_charge_percent: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl PackValues {
     /// The signal `cumulative_voltage`, to read or write it alone, or to ask for its limits.
     pub const CUMULATIVE_VOLTAGE: Signal<u16, f64> =
@@ -849,14 +846,10 @@ impl PackValues {
     /// The signal `state_of_charge`, to read or write it alone, or to ask for its limits.
     pub const STATE_OF_CHARGE: Signal<u16, f64> =
         Signal::new("state_of_charge", Place::bytes(6, 7)).unit("%").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pack_values", FRAME.id(Identifier::COMMAND, 0x90));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -866,6 +859,7 @@ impl PackValues {
 impl Layout for PackValues {
     const SIGNALS: AnySignals =
         &[&Self::CUMULATIVE_VOLTAGE, &Self::GATHERED_VOLTAGE, &Self::CURRENT, &Self::STATE_OF_CHARGE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         cumulative_voltage_v: Self::CUMULATIVE_VOLTAGE.decode(data),
         gathered_voltage_v: Self::GATHERED_VOLTAGE.decode(data),
@@ -873,7 +867,6 @@ impl Layout for PackValues {
         state_of_charge_percent: Self::STATE_OF_CHARGE.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CUMULATIVE_VOLTAGE.encode(self.cumulative_voltage_v, payload)?;
@@ -911,7 +904,6 @@ pub struct CellVoltageExtremes {
     pub minimum_cell: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CellVoltageExtremes {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16, f64> =
@@ -923,14 +915,10 @@ impl CellVoltageExtremes {
         Signal::new("minimum_voltage", Place::bytes(3, 4)).unit("V").scale(1, 1000);
     /// The signal `minimum_cell`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_CELL: Signal<u8> = Signal::new("minimum_cell", Place::byte(5));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("cell_voltage_extremes", FRAME.id(Identifier::COMMAND, 0x91));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -940,6 +928,7 @@ impl CellVoltageExtremes {
 impl Layout for CellVoltageExtremes {
     const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MAXIMUM_CELL, &Self::MINIMUM_VOLTAGE, &Self::MINIMUM_CELL];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode(data),
         maximum_cell: Self::MAXIMUM_CELL.get(data),
@@ -947,7 +936,6 @@ impl Layout for CellVoltageExtremes {
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
@@ -991,7 +979,6 @@ pub struct TemperatureExtremes {
     pub minimum_cell: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TemperatureExtremes {
     /// The signal `maximum_temperature`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_TEMPERATURE: Signal<u8, f64> =
@@ -1003,14 +990,10 @@ impl TemperatureExtremes {
         Signal::new("minimum_temperature", Place::byte(2)).unit("°C").offset(-40, 1);
     /// The signal `minimum_cell`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_CELL: Signal<u8> = Signal::new("minimum_cell", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("temperature_extremes", FRAME.id(Identifier::COMMAND, 0x92));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1020,6 +1003,7 @@ impl TemperatureExtremes {
 impl Layout for TemperatureExtremes {
     const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_TEMPERATURE, &Self::MAXIMUM_CELL, &Self::MINIMUM_TEMPERATURE, &Self::MINIMUM_CELL];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         maximum_temperature_c: Self::MAXIMUM_TEMPERATURE.decode(data),
         maximum_cell: Self::MAXIMUM_CELL.get(data),
@@ -1027,7 +1011,6 @@ impl Layout for TemperatureExtremes {
         minimum_cell: Self::MINIMUM_CELL.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_TEMPERATURE.encode(self.maximum_temperature_c, payload)?;
@@ -1071,7 +1054,6 @@ pub struct ChargeState {
     pub remaining_capacity_ah: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ChargeState {
     /// The signal `state`, to read or write it alone, or to ask for its limits.
     pub const STATE: Signal<OperatingState> = Signal::new("state", Place::byte(0));
@@ -1084,14 +1066,10 @@ impl ChargeState {
     /// The signal `remaining_capacity`, to read or write it alone, or to ask for its limits.
     pub const REMAINING_CAPACITY: Signal<u32, f64> =
         Signal::new("remaining_capacity", Place::bytes(4, 7)).unit("Ah").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("charge_state", FRAME.id(Identifier::COMMAND, 0x93));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1101,6 +1079,7 @@ impl ChargeState {
 impl Layout for ChargeState {
     const SIGNALS: AnySignals =
         &[&Self::STATE, &Self::CHARGE_MOS, &Self::DISCHARGE_MOS, &Self::LIFE, &Self::REMAINING_CAPACITY];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         state: Self::STATE.get(data),
         charge_mos: Self::CHARGE_MOS.get(data),
@@ -1109,7 +1088,6 @@ impl Layout for ChargeState {
         remaining_capacity_ah: Self::REMAINING_CAPACITY.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE.put(self.state, payload)?;
@@ -1141,7 +1119,6 @@ pub struct StatusInformation {
     pub inputs_outputs: InputsOutputs,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl StatusInformation {
     /// The signal `cell_count`, to read or write it alone, or to ask for its limits.
     pub const CELL_COUNT: Signal<u8> = Signal::new("cell_count", Place::byte(0));
@@ -1153,14 +1130,10 @@ impl StatusInformation {
     pub const LOAD: Signal<Connection> = Signal::new("load", Place::byte(3));
     /// The signal `inputs_outputs`, to read or write it alone, or to ask for its limits.
     pub const INPUTS_OUTPUTS: Signal<InputsOutputs> = Signal::new("inputs_outputs", Place::byte(4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("status_information", FRAME.id(Identifier::COMMAND, 0x94));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1170,6 +1143,7 @@ impl StatusInformation {
 impl Layout for StatusInformation {
     const SIGNALS: AnySignals =
         &[&Self::CELL_COUNT, &Self::TEMPERATURE_COUNT, &Self::CHARGER, &Self::LOAD, &Self::INPUTS_OUTPUTS];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         cell_count: Self::CELL_COUNT.get(data),
         temperature_count: Self::TEMPERATURE_COUNT.get(data),
@@ -1178,7 +1152,6 @@ impl Layout for StatusInformation {
         inputs_outputs: Self::INPUTS_OUTPUTS.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CELL_COUNT.put(self.cell_count, payload)?;
@@ -1217,7 +1190,6 @@ pub struct CellVoltages {
     pub voltage_v: [f64; 3],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CellVoltages {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 16).specials(&[(255, "invalid")]);
@@ -1229,14 +1201,10 @@ impl CellVoltages {
     pub const VOLTAGE_2: Signal<u16, f64> = Signal::new("voltage_2", Place::bytes(3, 4)).unit("V").scale(1, 1000);
     /// The signal `voltage_3`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE_3: Signal<u16, f64> = Signal::new("voltage_3", Place::bytes(5, 6)).unit("V").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("cell_voltages", FRAME.id(Identifier::COMMAND, 0x95));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1245,12 +1213,12 @@ impl CellVoltages {
 
 impl Layout for CellVoltages {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::VOLTAGE_1, &Self::VOLTAGE_2, &Self::VOLTAGE_3];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         part: Self::PART.get(data),
         voltage_v: [Self::VOLTAGE_1.decode(data), Self::VOLTAGE_2.decode(data), Self::VOLTAGE_3.decode(data)],
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -1295,7 +1263,6 @@ pub struct Temperatures {
     pub temperature_c: [f64; 7],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Temperatures {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 3);
@@ -1313,14 +1280,10 @@ impl Temperatures {
     pub const TEMPERATURE_6: Signal<u8, f64> = Signal::new("temperature_6", Place::byte(6)).unit("°C").offset(-40, 1);
     /// The signal `temperature_7`, to read or write it alone, or to ask for its limits.
     pub const TEMPERATURE_7: Signal<u8, f64> = Signal::new("temperature_7", Place::byte(7)).unit("°C").offset(-40, 1);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("temperatures", FRAME.id(Identifier::COMMAND, 0x96));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1338,6 +1301,7 @@ impl Layout for Temperatures {
         &Self::TEMPERATURE_6,
         &Self::TEMPERATURE_7,
     ];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         part: Self::PART.get(data),
         temperature_c: [
@@ -1351,7 +1315,6 @@ impl Layout for Temperatures {
         ],
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -1375,18 +1338,13 @@ pub struct BalanceState {
     pub balance: Balance,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl BalanceState {
     /// The signal `balance`, to read or write it alone, or to ask for its limits.
     pub const BALANCE: Signal<Balance> = Signal::new("balance", Place::bytes(5, 0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("balance_state", FRAME.id(Identifier::COMMAND, 0x97));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1395,9 +1353,9 @@ impl BalanceState {
 
 impl Layout for BalanceState {
     const SIGNALS: AnySignals = &[&Self::BALANCE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { balance: Self::BALANCE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::BALANCE.put(self.balance, payload)
@@ -1419,20 +1377,15 @@ pub struct FailureStatus {
     pub fault_code: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FailureStatus {
     /// The signal `failures`, to read or write it alone, or to ask for its limits.
     pub const FAILURES: Signal<Failures> = Signal::new("failures", Place::bytes(6, 0));
     /// The signal `fault_code`, to read or write it alone, or to ask for its limits.
     pub const FAULT_CODE: Signal<u8> = Signal::new("fault_code", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("failure_status", FRAME.id(Identifier::COMMAND, 0x98));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1441,10 +1394,10 @@ impl FailureStatus {
 
 impl Layout for FailureStatus {
     const SIGNALS: AnySignals = &[&Self::FAILURES, &Self::FAULT_CODE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { failures: Self::FAILURES.get(data), fault_code: Self::FAULT_CODE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::FAILURES.put(self.failures, payload)?;
@@ -1503,16 +1456,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

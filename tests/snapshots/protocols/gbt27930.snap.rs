@@ -82,7 +82,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -142,7 +141,6 @@ impl Addressed for Message {
     type Target = Target;
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -1706,20 +1704,16 @@ pub struct Chm {
     pub version_major: u16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Chm {
     /// The signal `version_minor`, to read or write it alone, or to ask for its limits.
     pub const VERSION_MINOR: Signal<u8> = Signal::new("version_minor", Place::byte(0));
     /// The signal `version_major`, to read or write it alone, or to ask for its limits.
     pub const VERSION_MAJOR: Signal<u16> = Signal::new("version_major", Place::bytes(2, 1));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("chm", FRAME.id(Identifier::FORMAT, 0x26)).length(3);
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -1728,10 +1722,11 @@ impl Chm {
 
 impl Layout for Chm {
     const SIGNALS: AnySignals = &[&Self::VERSION_MINOR, &Self::VERSION_MAJOR];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { version_minor: Self::VERSION_MINOR.get(data), version_major: Self::VERSION_MAJOR.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION_MINOR.put(self.version_minor, payload)?;
@@ -1758,17 +1753,16 @@ impl Bhm {
         .scale(1, 10)
         .specials(&[(65_535, "not_available")])
         .absent();
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bhm", FRAME.id(Identifier::FORMAT, 0x27)).length(2);
 }
 
 impl Layout for Bhm {
     const SIGNALS: AnySignals = &[&Self::MAXIMUM_VOLTAGE];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)
@@ -1802,7 +1796,6 @@ pub struct Crm {
     pub area_code: Text<3, 0xFF>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Crm {
     /// The signal `result`, to read or write it alone, or to ask for its limits.
     pub const RESULT: Signal<Recognition> = Signal::new("result", Place::byte(0));
@@ -1810,14 +1803,11 @@ impl Crm {
     pub const CHARGER_NUMBER: Signal<u32> = Signal::new("charger_number", Place::bytes(4, 1));
     /// The signal `area_code`, to read or write it alone, or to ask for its limits.
     pub const AREA_CODE: Signal<Text<3, 0xFF>> = Signal::new("area_code", Place::bytes(5, 7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("crm", FRAME.id(Identifier::FORMAT, 0x01));
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -1826,13 +1816,14 @@ impl Crm {
 
 impl Layout for Crm {
     const SIGNALS: AnySignals = &[&Self::RESULT, &Self::CHARGER_NUMBER, &Self::AREA_CODE];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         result: Self::RESULT.get(data),
         charger_number: Self::CHARGER_NUMBER.get(data),
         area_code: Self::AREA_CODE.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::RESULT.put(self.result, payload)?;
@@ -2261,7 +2252,6 @@ pub struct Cts {
     pub year: Option<Bcd<u16>>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cts {
     /// The signal `second`, to read or write it alone, or to ask for its limits.
     pub const SECOND: Signal<Bcd<u8>> =
@@ -2279,14 +2269,11 @@ impl Cts {
     /// The signal `year`, to read or write it alone, or to ask for its limits.
     pub const YEAR: Signal<Bcd<u16>> =
         Signal::new("year", Place::bytes(6, 5)).specials(&[(65_535, "not_available")]).absent();
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cts", FRAME.id(Identifier::FORMAT, 0x07)).length(7);
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2295,6 +2282,8 @@ impl Cts {
 
 impl Layout for Cts {
     const SIGNALS: AnySignals = &[&Self::SECOND, &Self::MINUTE, &Self::HOUR, &Self::DAY, &Self::MONTH, &Self::YEAR];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         second: Self::SECOND.get_some(data, 8),
         minute: Self::MINUTE.get_some(data, 8),
@@ -2304,7 +2293,6 @@ impl Layout for Cts {
         year: Self::YEAR.get_some(data, 8),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SECOND.put_some(self.second, payload)?;
@@ -2350,7 +2338,6 @@ pub struct Cml {
     pub minimum_current_a: Option<f64>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cml {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16, f64> = Signal::new("maximum_voltage", Place::bytes(1, 0))
@@ -2378,14 +2365,11 @@ impl Cml {
         .offset(-400, 1)
         .specials(&[(65_535, "not_available")])
         .absent();
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cml", FRAME.id(Identifier::FORMAT, 0x08));
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2395,6 +2379,8 @@ impl Cml {
 impl Layout for Cml {
     const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE, &Self::MAXIMUM_CURRENT, &Self::MINIMUM_CURRENT];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8),
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.decode_some(data, 8),
@@ -2402,7 +2388,6 @@ impl Layout for Cml {
         minimum_current_a: Self::MINIMUM_CURRENT.decode_some(data, 8),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)?;
@@ -2426,8 +2411,6 @@ pub struct Bro {
 impl Bro {
     /// The signal `readiness`, to read or write it alone, or to ask for its limits.
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bro", FRAME.id(Identifier::FORMAT, 0x09))
@@ -2437,9 +2420,10 @@ impl Bro {
 
 impl Layout for Bro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)
@@ -2457,21 +2441,17 @@ pub struct Cro {
     pub readiness: Readiness,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cro {
     /// The signal `readiness`, to read or write it alone, or to ask for its limits.
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
         .of("cro", FRAME.id(Identifier::FORMAT, 0x0A))
         .length(1)
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2480,9 +2460,10 @@ impl Cro {
 
 impl Layout for Cro {
     const SIGNALS: AnySignals = &[&Self::READINESS];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)
@@ -2526,21 +2507,20 @@ impl Bcl {
         .absent();
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<ChargingMode> = Signal::new("mode", Place::byte(4));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bcl", FRAME.id(Identifier::FORMAT, 0x10)).length(5);
 }
 
 impl Layout for Bcl {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::MODE];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode_some(data, 8),
         current_a: Self::CURRENT.decode_some(data, 8),
         mode: Self::MODE.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
@@ -2702,7 +2682,6 @@ pub struct Ccs {
     pub byte_8: Option<Bytes<1>>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Ccs {
     /// The signal `output_voltage`, to read or write it alone, or to ask for its limits.
     pub const OUTPUT_VOLTAGE: Signal<u16, f64> = Signal::new("output_voltage", Place::bytes(1, 0))
@@ -2727,17 +2706,14 @@ impl Ccs {
     pub const PERMISSION: Signal<ChargerPermission> = Signal::new("permission", Place::byte(6).bits(1, 0));
     /// The signal `byte_8`, to read or write it alone, or to ask for its limits.
     pub const BYTE_8: Signal<Bytes<1>> = Signal::new("byte_8", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
         .of("ccs", FRAME.id(Identifier::FORMAT, 0x12))
         .length(7)
         .sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]));
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2747,6 +2723,8 @@ impl Ccs {
 impl Layout for Ccs {
     const SIGNALS: AnySignals =
         &[&Self::OUTPUT_VOLTAGE, &Self::OUTPUT_CURRENT, &Self::CHARGING_TIME, &Self::PERMISSION, &Self::BYTE_8];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[7, 8];
 
@@ -2761,7 +2739,6 @@ impl Layout for Ccs {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(7);
@@ -2887,8 +2864,6 @@ impl Bsm {
     pub const CONNECTOR_STATE: Signal<AbnormalState> = Signal::new("connector_state", Place::byte(6).bits(3, 2));
     /// The signal `permission`, to read or write it alone, or to ask for its limits.
     pub const PERMISSION: Signal<BmsPermission> = Signal::new("permission", Place::byte(6).bits(5, 4));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bsm", FRAME.id(Identifier::FORMAT, 0x13))
@@ -2911,6 +2886,8 @@ impl Layout for Bsm {
         &Self::CONNECTOR_STATE,
         &Self::PERMISSION,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         highest_cell: Self::HIGHEST_CELL.decode(data),
         highest_temperature_c: Self::HIGHEST_TEMPERATURE.decode_some(data, 8),
@@ -2926,7 +2903,6 @@ impl Layout for Bsm {
         permission: Self::PERMISSION.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HIGHEST_CELL.encode(self.highest_cell, payload)?;
@@ -3055,8 +3031,6 @@ impl BmvFrame {
         .absent();
     /// The signal `cell_group_4`, to read or write it alone, or to ask for its limits.
     pub const CELL_GROUP_4: Signal<u8> = Signal::new("cell_group_4", Place::byte(7).bits(7, 4));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 }
 
 impl Layout for BmvFrame {
@@ -3070,6 +3044,8 @@ impl Layout for BmvFrame {
         &Self::CELL_VOLTAGE_4,
         &Self::CELL_GROUP_4,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[2, 4, 6, 8];
 
@@ -3091,7 +3067,6 @@ impl Layout for BmvFrame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(2);
@@ -3233,8 +3208,6 @@ impl BmtFrame {
         .limits(-50.0, 200.0)
         .specials(&[(255, "not_available")])
         .absent();
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 }
 
 impl Layout for BmtFrame {
@@ -3248,6 +3221,8 @@ impl Layout for BmtFrame {
         &Self::TEMPERATURE_7,
         &Self::TEMPERATURE_8,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
@@ -3267,7 +3242,6 @@ impl Layout for BmtFrame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
@@ -3371,8 +3345,6 @@ impl BspFrame {
     pub const RESERVED_7: Signal<Bytes<1>> = Signal::new("reserved_7", Place::byte(6));
     /// The signal `reserved_8`, to read or write it alone, or to ask for its limits.
     pub const RESERVED_8: Signal<Bytes<1>> = Signal::new("reserved_8", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 }
 
 impl Layout for BspFrame {
@@ -3386,6 +3358,8 @@ impl Layout for BspFrame {
         &Self::RESERVED_7,
         &Self::RESERVED_8,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
@@ -3405,7 +3379,6 @@ impl Layout for BspFrame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
@@ -3547,8 +3520,6 @@ impl Bst {
     pub const CURRENT: Signal<ExcessState> = Signal::new("current", Place::byte(3).bits(1, 0));
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bst", FRAME.id(Identifier::FORMAT, 0x19))
@@ -3573,6 +3544,8 @@ impl Layout for Bst {
         &Self::CURRENT,
         &Self::VOLTAGE,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         target_soc: Self::TARGET_SOC.get(data),
         total_voltage: Self::TOTAL_VOLTAGE.get(data),
@@ -3590,7 +3563,6 @@ impl Layout for Bst {
         voltage: Self::VOLTAGE.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TARGET_SOC.put(self.target_soc, payload)?;
@@ -3680,7 +3652,6 @@ pub struct Cst {
     pub voltage: AbnormalState,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cst {
     /// The signal `condition_reached`, to read or write it alone, or to ask for its limits.
     pub const CONDITION_REACHED: Signal<StopState> = Signal::new("condition_reached", Place::byte(0).bits(1, 0));
@@ -3708,17 +3679,14 @@ impl Cst {
     pub const CURRENT: Signal<MismatchState> = Signal::new("current", Place::byte(3).bits(1, 0));
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange =
         CHARGER_CYCLE_ACCESS.of("cst", FRAME.id(Identifier::FORMAT, 0x1A)).length(4).sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -3740,6 +3708,8 @@ impl Layout for Cst {
         &Self::CURRENT,
         &Self::VOLTAGE,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         condition_reached: Self::CONDITION_REACHED.get(data),
         manual_stop: Self::MANUAL_STOP.get(data),
@@ -3755,7 +3725,6 @@ impl Layout for Cst {
         voltage: Self::VOLTAGE.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CONDITION_REACHED.put(self.condition_reached, payload)?;
@@ -3838,8 +3807,6 @@ impl Bsd {
         .limits(-50.0, 200.0)
         .specials(&[(255, "not_available")])
         .absent();
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bsd", FRAME.id(Identifier::FORMAT, 0x1C)).length(7);
 }
@@ -3852,6 +3819,8 @@ impl Layout for Bsd {
         &Self::LOWEST_TEMPERATURE,
         &Self::HIGHEST_TEMPERATURE,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         state_of_charge_percent: Self::STATE_OF_CHARGE.get_some(data, 8),
         lowest_cell_voltage_v: Self::LOWEST_CELL_VOLTAGE.decode_some(data, 8),
@@ -3860,7 +3829,6 @@ impl Layout for Bsd {
         highest_temperature_c: Self::HIGHEST_TEMPERATURE.decode_some(data, 8),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE_OF_CHARGE.put_some(self.state_of_charge_percent, payload)?;
@@ -3894,7 +3862,6 @@ pub struct Csd {
     pub charger_number: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Csd {
     /// The signal `charging_time`, to read or write it alone, or to ask for its limits.
     pub const CHARGING_TIME: Signal<u16> = Signal::new("charging_time", Place::bytes(1, 0))
@@ -3911,14 +3878,11 @@ impl Csd {
         .absent();
     /// The signal `charger_number`, to read or write it alone, or to ask for its limits.
     pub const CHARGER_NUMBER: Signal<u32> = Signal::new("charger_number", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("csd", FRAME.id(Identifier::FORMAT, 0x1D));
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -3927,13 +3891,14 @@ impl Csd {
 
 impl Layout for Csd {
     const SIGNALS: AnySignals = &[&Self::CHARGING_TIME, &Self::OUTPUT_ENERGY, &Self::CHARGER_NUMBER];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         charging_time_min: Self::CHARGING_TIME.get_some(data, 8),
         output_energy_wh: Self::OUTPUT_ENERGY.decode_some(data, 8),
         charger_number: Self::CHARGER_NUMBER.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
@@ -3999,8 +3964,6 @@ impl Bem {
     pub const CST: Signal<TimeoutState> = Signal::new("cst", Place::byte(2).bits(3, 2));
     /// The signal `csd`, to read or write it alone, or to ask for its limits.
     pub const CSD: Signal<TimeoutState> = Signal::new("csd", Place::byte(3).bits(1, 0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bem", FRAME.id(Identifier::FORMAT, 0x1E))
@@ -4018,6 +3981,8 @@ impl Layout for Bem {
         &Self::CST,
         &Self::CSD,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         crm_not_recognised: Self::CRM_NOT_RECOGNISED.get(data),
         crm_recognised: Self::CRM_RECOGNISED.get(data),
@@ -4028,7 +3993,6 @@ impl Layout for Bem {
         csd: Self::CSD.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CRM_NOT_RECOGNISED.put(self.crm_not_recognised, payload)?;
@@ -4080,7 +4044,6 @@ pub struct Cem {
     pub bsd: TimeoutState,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Cem {
     /// The signal `brm`, to read or write it alone, or to ask for its limits.
     pub const BRM: Signal<TimeoutState> = Signal::new("brm", Place::byte(0).bits(1, 0));
@@ -4096,17 +4059,14 @@ impl Cem {
     pub const BST: Signal<TimeoutState> = Signal::new("bst", Place::byte(2).bits(5, 4));
     /// The signal `bsd`, to read or write it alone, or to ask for its limits.
     pub const BSD: Signal<TimeoutState> = Signal::new("bsd", Place::byte(3).bits(1, 0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange =
         CHARGER_CYCLE_ACCESS.of("cem", FRAME.id(Identifier::FORMAT, 0x1F)).length(4).sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -4115,6 +4075,8 @@ impl Cem {
 
 impl Layout for Cem {
     const SIGNALS: AnySignals = &[&Self::BRM, &Self::BCP, &Self::BRO, &Self::BCS, &Self::BCL, &Self::BST, &Self::BSD];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         brm: Self::BRM.get(data),
         bcp: Self::BCP.get(data),
@@ -4125,7 +4087,6 @@ impl Layout for Cem {
         bsd: Self::BSD.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::BRM.put(self.brm, payload)?;
@@ -4190,10 +4151,8 @@ impl Dm1 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
-    /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
-    /// with too few bytes.
+    /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
+    /// other addressing modes, undocumented addresses, and a buffer with too few bytes.
     pub fn charger_event<'a>(
         &self,
         route: impl Into<Route<Target>>,
@@ -4263,7 +4222,6 @@ pub struct Dm1Frame {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm1Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
@@ -4289,12 +4247,9 @@ impl Dm1Frame {
     /// The signal `code_conversion_2`, to read or write it alone, or to ask for its limits.
     pub const CODE_CONVERSION_2: Signal<TroubleCodeConversion> =
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm1::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4314,6 +4269,8 @@ impl Layout for Dm1Frame {
         &Self::CODE_OCCURRENCE_2,
         &Self::CODE_CONVERSION_2,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[4, 8];
 
@@ -4334,7 +4291,6 @@ impl Layout for Dm1Frame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
@@ -4411,10 +4367,8 @@ impl Dm2 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
-    /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
-    /// with too few bytes.
+    /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
+    /// other addressing modes, undocumented addresses, and a buffer with too few bytes.
     pub fn charger_event<'a>(
         &self,
         route: impl Into<Route<Target>>,
@@ -4484,7 +4438,6 @@ pub struct Dm2Frame {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm2Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
@@ -4510,12 +4463,9 @@ impl Dm2Frame {
     /// The signal `code_conversion_2`, to read or write it alone, or to ask for its limits.
     pub const CODE_CONVERSION_2: Signal<TroubleCodeConversion> =
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm2::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4535,6 +4485,8 @@ impl Layout for Dm2Frame {
         &Self::CODE_OCCURRENCE_2,
         &Self::CODE_CONVERSION_2,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[4, 8];
 
@@ -4555,7 +4507,6 @@ impl Layout for Dm2Frame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(4);
@@ -4592,20 +4543,16 @@ pub struct Dm3 {
     pub value: Bytes<2>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<2>> = Signal::new("value", Place::bytes(0, 1));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4614,9 +4561,10 @@ impl Dm3 {
 
 impl Layout for Dm3 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -4633,16 +4581,14 @@ impl Layout for Dm3 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm4;
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm4 {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, &())
@@ -4656,16 +4602,14 @@ impl Dm4 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm5;
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm5 {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, &())
@@ -4697,10 +4641,8 @@ impl Dm6 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
-    /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
-    /// with too few bytes.
+    /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
+    /// other addressing modes, undocumented addresses, and a buffer with too few bytes.
     pub fn charger_event<'a>(
         &self,
         route: impl Into<Route<Target>>,
@@ -4736,7 +4678,6 @@ pub struct Dm6Frame {
     pub data: [Option<Bytes<1>>; 8],
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Dm6Frame {
     /// The signal `data_1`, to read or write it alone, or to ask for its limits.
     pub const DATA_1: Signal<Bytes<1>> = Signal::new("data_1", Place::byte(0));
@@ -4754,12 +4695,9 @@ impl Dm6Frame {
     pub const DATA_7: Signal<Bytes<1>> = Signal::new("data_7", Place::byte(6));
     /// The signal `data_8`, to read or write it alone, or to ask for its limits.
     pub const DATA_8: Signal<Bytes<1>> = Signal::new("data_8", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm6::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4777,6 +4715,8 @@ impl Layout for Dm6Frame {
         &Self::DATA_7,
         &Self::DATA_8,
     ];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const LENGTHS: &'static [u8] = &[1, 2, 3, 4, 5, 6, 7, 8];
 
@@ -4796,7 +4736,6 @@ impl Layout for Dm6Frame {
         }
     }
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         payload.end_after(1);
@@ -4842,20 +4781,16 @@ pub struct Rqst {
     pub pgn: Pgn,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Rqst {
     /// The signal `pgn`, to read or write it alone, or to ask for its limits.
     pub const PGN: Signal<Pgn> = Signal::new("pgn", Place::bytes(2, 0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4864,9 +4799,10 @@ impl Rqst {
 
 impl Layout for Rqst {
     const SIGNALS: AnySignals = &[&Self::PGN];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { pgn: Self::PGN.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PGN.put(self.pgn, payload)
@@ -4886,7 +4822,6 @@ pub struct Ackm {
     pub pgn: Pgn,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Ackm {
     /// The signal `control`, to read or write it alone, or to ask for its limits.
     pub const CONTROL: Signal<Acknowledgment> = Signal::new("control", Place::byte(0));
@@ -4895,8 +4830,6 @@ impl Ackm {
         Signal::new("group_function", Place::byte(1)).specials(&[(255, "not_available")]).absent();
     /// The signal `pgn`, to read or write it alone, or to ask for its limits.
     pub const PGN: Signal<Pgn> = Signal::new("pgn", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
@@ -4906,9 +4839,8 @@ impl Ackm {
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
         .sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
 
-    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
+    /// their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4917,13 +4849,14 @@ impl Ackm {
 
 impl Layout for Ackm {
     const SIGNALS: AnySignals = &[&Self::CONTROL, &Self::GROUP_FUNCTION, &Self::PGN];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         control: Self::CONTROL.get(data),
         group_function: Self::GROUP_FUNCTION.get_some(data, 8),
         pgn: Self::PGN.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CONTROL.put(self.control, payload)?;
@@ -4947,7 +4880,6 @@ pub struct TpRequestToSend {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpRequestToSend {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -4957,8 +4889,6 @@ impl TpRequestToSend {
     pub const MOST: Signal<u8> = Signal::new("most", Place::byte(4)).limits(1, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
@@ -4968,9 +4898,8 @@ impl TpRequestToSend {
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -4979,6 +4908,8 @@ impl TpRequestToSend {
 
 impl Layout for TpRequestToSend {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         size: Self::SIZE.get(data),
         packets: Self::PACKETS.get(data),
@@ -4986,7 +4917,6 @@ impl Layout for TpRequestToSend {
         group: Self::GROUP.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -5012,7 +4942,6 @@ pub struct TpClearToSend {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpClearToSend {
     /// The signal `packets`, to read or write it alone, or to ask for its limits.
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(1));
@@ -5020,8 +4949,6 @@ impl TpClearToSend {
     pub const NEXT: Signal<u8> = Signal::new("next", Place::byte(2));
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
@@ -5033,9 +4960,8 @@ impl TpClearToSend {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5044,10 +4970,11 @@ impl TpClearToSend {
 
 impl Layout for TpClearToSend {
     const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PACKETS.put(self.packets, payload)?;
@@ -5069,7 +4996,6 @@ pub struct TpEndOfMessage {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpEndOfMessage {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -5077,8 +5003,6 @@ impl TpEndOfMessage {
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(3)).limits(2, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
@@ -5090,9 +5014,8 @@ impl TpEndOfMessage {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5101,10 +5024,11 @@ impl TpEndOfMessage {
 
 impl Layout for TpEndOfMessage {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -5130,7 +5054,6 @@ pub struct TpBroadcast {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpBroadcast {
     /// The signal `size`, to read or write it alone, or to ask for its limits.
     pub const SIZE: Signal<u16> = Signal::new("size", Place::bytes(2, 1)).limits(9, 1785);
@@ -5138,8 +5061,6 @@ impl TpBroadcast {
     pub const PACKETS: Signal<u8> = Signal::new("packets", Place::byte(3)).limits(2, 255);
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
@@ -5151,9 +5072,8 @@ impl TpBroadcast {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5162,10 +5082,11 @@ impl TpBroadcast {
 
 impl Layout for TpBroadcast {
     const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SIZE.put(self.size, payload)?;
@@ -5186,14 +5107,11 @@ pub struct TpAbort {
     pub group: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpAbort {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(1));
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
@@ -5205,9 +5123,8 @@ impl TpAbort {
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         );
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5216,9 +5133,10 @@ impl TpAbort {
 
 impl Layout for TpAbort {
     const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::REASON.put(self.reason, payload)?;
@@ -5237,14 +5155,11 @@ pub struct TpData {
     pub data: Bytes<7>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl TpData {
     /// The signal `number`, to read or write it alone, or to ask for its limits.
     pub const NUMBER: Signal<u8> = Signal::new("number", Place::byte(0)).limits(1, 255);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
@@ -5254,9 +5169,8 @@ impl TpData {
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
-    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5265,9 +5179,10 @@ impl TpData {
 
 impl Layout for TpData {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
+    /// Requests send ones in these bits.
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
@@ -5398,16 +5313,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -81,7 +81,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -150,7 +149,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -1045,20 +1043,16 @@ pub struct SystemOutput {
     pub current_a: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.inlined_request_to(route, &())
@@ -1067,9 +1061,9 @@ impl SystemOutput {
 
 impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1090,18 +1084,14 @@ pub struct ModuleCount {
     pub count: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
-    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.inlined_request_to(route, &())
@@ -1110,9 +1100,9 @@ impl ModuleCount {
 
 impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
+    const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
@@ -1135,20 +1125,15 @@ pub struct ModuleOutput {
     pub current_a: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1157,9 +1142,9 @@ impl ModuleOutput {
 
 impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1195,7 +1180,6 @@ pub struct ModuleStatus {
     pub status_0: Status0,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleStatus {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
@@ -1207,14 +1191,10 @@ impl ModuleStatus {
     pub const STATUS_1: Signal<Status1> = Signal::new("status_1", Place::byte(6));
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1223,6 +1203,7 @@ impl ModuleStatus {
 
 impl Layout for ModuleStatus {
     const SIGNALS: AnySignals = &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
+    const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         group: Self::GROUP.get(data),
         temperature_c: Self::TEMPERATURE.get(data),
@@ -1231,7 +1212,6 @@ impl Layout for ModuleStatus {
         status_0: Self::STATUS_0.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)?;
@@ -1270,7 +1250,6 @@ pub struct InputVoltage {
     pub ca_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `ab`, to read or write it alone, or to ask for its limits.
     pub const AB: Signal<u16, f64> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1278,8 +1257,6 @@ impl InputVoltage {
     pub const BC: Signal<u16, f64> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06)).models(&[
         Model::PsM2_3ac1000dc30kw as u8,
@@ -1287,9 +1264,7 @@ impl InputVoltage {
         Model::PsM2_3ac500dc20kw as u8,
     ]);
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1298,10 +1273,10 @@ impl InputVoltage {
 
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::AB.encode(self.ab_v, payload)?;
@@ -1340,7 +1315,6 @@ pub struct InputVoltageDc {
     pub minus_pe_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltageDc {
     /// The signal `plus_minus`, to read or write it alone, or to ask for its limits.
     pub const PLUS_MINUS: Signal<u16, f64> = Signal::new("plus_minus", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1348,16 +1322,12 @@ impl InputVoltageDc {
     pub const PLUS_PE: Signal<u16, f64> = Signal::new("plus_pe", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `minus_pe`, to read or write it alone, or to ask for its limits.
     pub const MINUS_PE: Signal<u16, f64> = Signal::new("minus_pe", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
         .of("input_voltage_dc", FRAME.id(Identifier::COMMAND, 0x06))
         .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1366,13 +1336,13 @@ impl InputVoltageDc {
 
 impl Layout for InputVoltageDc {
     const SIGNALS: AnySignals = &[&Self::PLUS_MINUS, &Self::PLUS_PE, &Self::MINUS_PE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         plus_minus_v: Self::PLUS_MINUS.decode(data),
         plus_pe_v: Self::PLUS_PE.decode(data),
         minus_pe_v: Self::MINUS_PE.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PLUS_MINUS.encode(self.plus_minus_v, payload)?;
@@ -1403,21 +1373,16 @@ pub struct ExternalVoltage {
     pub allowed_current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ExternalVoltage {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `allowed_current`, to read or write it alone, or to ask for its limits.
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1426,10 +1391,10 @@ impl ExternalVoltage {
 
 impl Layout for ExternalVoltage {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1452,39 +1417,31 @@ pub struct LimitInputCurrent {
     pub current_a: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl LimitInputCurrent {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
         .of("limit_input_current", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1205))
         .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_UNANSWERED.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<LimitInputCurrent> {
-    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses other
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         LimitInputCurrent::SET_UNANSWERED.inlined_request_within(self.model, route, &self.values)
@@ -1493,9 +1450,9 @@ impl Within<LimitInputCurrent> {
 
 impl Layout for LimitInputCurrent {
     const SIGNALS: AnySignals = &[&Self::CURRENT];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::CURRENT.put(self.current_a, payload)
@@ -1539,40 +1496,32 @@ pub struct SetOperatingMode {
     pub mode: OperatingMode,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetOperatingMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<OperatingMode> = Signal::new("mode", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
         .of("set_operating_mode", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1111))
         .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_UNANSWERED.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses values
+    /// outside their limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetOperatingMode> {
-    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses other
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         SetOperatingMode::SET_UNANSWERED.inlined_request_within(self.model, route, &self.values)
@@ -1581,9 +1530,9 @@ impl Within<SetOperatingMode> {
 
 impl Layout for SetOperatingMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)
@@ -1629,7 +1578,6 @@ pub struct SetWalkIn {
     pub interval_s: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
@@ -1641,14 +1589,11 @@ impl SetWalkIn {
         .specials(&[(0, "unspecified")]);
     /// The value of `interval` that stands for `unspecified`.
     pub const INTERVAL_UNSPECIFIED: f64 = 0.0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1657,10 +1602,10 @@ impl SetWalkIn {
 
 impl Layout for SetWalkIn {
     const SIGNALS: AnySignals = &[&Self::WALK_IN, &Self::INTERVAL];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::WALK_IN.put(self.walk_in, payload)?;
@@ -1675,16 +1620,13 @@ pub struct SetWalkInReply {
     pub walk_in: WalkIn,
 }
 
-impl SetWalkInReply {
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
-}
+impl SetWalkInReply {}
 
 impl Layout for SetWalkInReply {
     const SIGNALS: AnySignals = &[&SetWalkIn::WALK_IN];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         SetWalkIn::WALK_IN.put(self.walk_in, payload)
@@ -1716,18 +1658,14 @@ pub struct SetLed {
     pub led: Led,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1736,9 +1674,9 @@ impl SetLed {
 
 impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LED.put(self.led, payload)
@@ -1763,18 +1701,14 @@ pub struct SwitchModules {
     pub power: Power,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1783,9 +1717,9 @@ impl SwitchModules {
 
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)
@@ -1812,20 +1746,16 @@ pub struct SetTotalOutput {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotalOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `set_total`, for filters and blank frames of it.
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
-    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses values outside their
+    /// limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.inlined_request_to(route, self)
@@ -1834,10 +1764,10 @@ impl SetTotalOutput {
 
 impl Layout for SetTotalOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1864,20 +1794,16 @@ pub struct SetModuleOutput {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1886,10 +1812,10 @@ impl SetModuleOutput {
 
 impl Layout for SetModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1956,24 +1882,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

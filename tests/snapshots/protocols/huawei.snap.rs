@@ -113,7 +113,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -167,7 +166,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -1213,7 +1211,6 @@ pub struct MeasuredData {
     pub alarms: Option<Alarms>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MeasuredData {
     /// The access `read_all`, for filters and blank frames of it.
     pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("measured_data", FRAME.id(Identifier::COMMAND, 0x40)).answers(&[
@@ -1226,9 +1223,8 @@ impl MeasuredData {
         None,
     ]);
 
-    /// Builds the request [`read_all`](READ_ALL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_all`](READ_ALL_ACCESS). Refuses other addressing modes and undocumented
+    /// addresses.
     #[inline(always)]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ_ALL.inlined_request_to(route, &())
@@ -1312,12 +1308,9 @@ pub struct OperatingHours {
     pub value_h: i32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OperatingHours {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("h");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("operating_hours", FRAME.data(REGISTER_SELECTOR.place, 0x10E));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1325,9 +1318,7 @@ impl OperatingHours {
         .of("operating_hours", FRAME.data(REGISTER_SELECTOR.place, 0x10E))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1336,9 +1327,9 @@ impl OperatingHours {
 
 impl Layout for OperatingHours {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_h, payload)
@@ -1359,12 +1350,9 @@ pub struct InputPower {
     pub value_w: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x170));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1372,9 +1360,7 @@ impl InputPower {
         .of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x170))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1383,9 +1369,9 @@ impl InputPower {
 
 impl Layout for InputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_w, payload)
@@ -1403,12 +1389,9 @@ pub struct InputFrequency {
     pub value_hz: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("input_frequency", FRAME.data(REGISTER_SELECTOR.place, 0x171));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1416,9 +1399,7 @@ impl InputFrequency {
         .of("input_frequency", FRAME.data(REGISTER_SELECTOR.place, 0x171))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1427,9 +1408,9 @@ impl InputFrequency {
 
 impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_hz, payload)
@@ -1447,12 +1428,9 @@ pub struct InputCurrent {
     pub value_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("input_current", FRAME.data(REGISTER_SELECTOR.place, 0x172));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1460,9 +1438,7 @@ impl InputCurrent {
         .of("input_current", FRAME.data(REGISTER_SELECTOR.place, 0x172))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1471,9 +1447,9 @@ impl InputCurrent {
 
 impl Layout for InputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1491,12 +1467,9 @@ pub struct OutputPower {
     pub value_w: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("output_power", FRAME.data(REGISTER_SELECTOR.place, 0x173));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1504,9 +1477,7 @@ impl OutputPower {
         .of("output_power", FRAME.data(REGISTER_SELECTOR.place, 0x173))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1515,9 +1486,9 @@ impl OutputPower {
 
 impl Layout for OutputPower {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_w, payload)
@@ -1535,12 +1506,9 @@ pub struct Efficiency {
     pub value: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Efficiency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("efficiency", FRAME.data(REGISTER_SELECTOR.place, 0x174));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1548,9 +1516,7 @@ impl Efficiency {
         .of("efficiency", FRAME.data(REGISTER_SELECTOR.place, 0x174))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1559,9 +1525,9 @@ impl Efficiency {
 
 impl Layout for Efficiency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value, payload)
@@ -1580,12 +1546,9 @@ pub struct OutputVoltage {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x175));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1593,9 +1556,7 @@ impl OutputVoltage {
         .of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x175))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1604,9 +1565,9 @@ impl OutputVoltage {
 
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1632,7 +1593,6 @@ pub struct MaximumOutputCurrent {
     pub value_raw: i32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MaximumOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).by_model();
@@ -1661,8 +1621,6 @@ impl MaximumOutputCurrent {
         }
     }
 
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("maximum_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x176));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1670,9 +1628,7 @@ impl MaximumOutputCurrent {
         .of("maximum_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x176))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1684,9 +1640,7 @@ impl MaximumOutputCurrent {
         Self::value_on(model)?.physical_of(self.value_raw)
     }
 
-    /// Sets `value` to a number of a device model.
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
+    /// Sets `value` to a number of a device model. Refuses one without a scale, and values outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("maximum_output_current"))?;
         self.value_raw = signal.raw_of(value, "maximum_output_current")?;
@@ -1696,9 +1650,9 @@ impl MaximumOutputCurrent {
 
 impl Layout for MaximumOutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
@@ -1719,12 +1673,9 @@ pub struct InputVoltage {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x178));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1732,9 +1683,7 @@ impl InputVoltage {
         .of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x178))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1743,9 +1692,9 @@ impl InputVoltage {
 
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1763,12 +1712,9 @@ pub struct OutputTemperature {
     pub value_c: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("output_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x17F));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1776,9 +1722,7 @@ impl OutputTemperature {
         .of("output_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x17F))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1787,9 +1731,9 @@ impl OutputTemperature {
 
 impl Layout for OutputTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
@@ -1812,12 +1756,9 @@ pub struct InputTemperature {
     pub value_c: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("input_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x180));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1825,9 +1766,7 @@ impl InputTemperature {
         .of("input_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x180))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1836,9 +1775,9 @@ impl InputTemperature {
 
 impl Layout for InputTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
@@ -1860,12 +1799,9 @@ pub struct OutputCurrent1 {
     pub value_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("output_current_1", FRAME.data(REGISTER_SELECTOR.place, 0x181));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1873,9 +1809,7 @@ impl OutputCurrent1 {
         .of("output_current_1", FRAME.data(REGISTER_SELECTOR.place, 0x181))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1884,9 +1818,9 @@ impl OutputCurrent1 {
 
 impl Layout for OutputCurrent1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1908,12 +1842,9 @@ pub struct OutputCurrent2 {
     pub value_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("output_current_2", FRAME.data(REGISTER_SELECTOR.place, 0x182));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1921,9 +1852,7 @@ impl OutputCurrent2 {
         .of("output_current_2", FRAME.data(REGISTER_SELECTOR.place, 0x182))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1932,9 +1861,9 @@ impl OutputCurrent2 {
 
 impl Layout for OutputCurrent2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1959,12 +1888,9 @@ pub struct Alarms {
     pub value: AlarmBits,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Alarms {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AlarmBits> = Signal::new("value", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("alarms", FRAME.data(REGISTER_SELECTOR.place, 0x183));
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
@@ -1972,9 +1898,7 @@ impl Alarms {
         .of("alarms", FRAME.data(REGISTER_SELECTOR.place, 0x183))
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -1983,9 +1907,9 @@ impl Alarms {
 
 impl Layout for Alarms {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2009,7 +1933,6 @@ pub struct FanState {
     pub speed_rpm: u16,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanState {
     /// The signal `minimum_duty`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_DUTY: Signal<u16, f64> = Signal::new("minimum_duty", Place::bytes(2, 3)).unit("%").scale(1, 256);
@@ -2017,14 +1940,10 @@ impl FanState {
     pub const TARGET_DUTY: Signal<u16, f64> = Signal::new("target_duty", Place::bytes(4, 5)).unit("%").scale(1, 256);
     /// The signal `speed`, to read or write it alone, or to ask for its limits.
     pub const SPEED: Signal<u16> = Signal::new("speed", Place::bytes(6, 7)).unit("rpm");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("fan_state", FRAME.data(REGISTER_SELECTOR.place, 0x187));
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -2033,13 +1952,13 @@ impl FanState {
 
 impl Layout for FanState {
     const SIGNALS: AnySignals = &[&Self::MINIMUM_DUTY, &Self::TARGET_DUTY, &Self::SPEED];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         minimum_duty_percent: Self::MINIMUM_DUTY.decode(data),
         target_duty_percent: Self::TARGET_DUTY.decode(data),
         speed_rpm: Self::SPEED.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MINIMUM_DUTY.encode(self.minimum_duty_percent, payload)?;
@@ -2069,14 +1988,12 @@ pub struct Information {
     pub hardware_address: Option<HardwareAddress>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Information {
     /// The access `read_all`, for filters and blank frames of it.
     pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("information", FRAME.id(Identifier::COMMAND, 0x50));
 
-    /// Builds the request [`read_all`](READ_ALL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_all`](READ_ALL_ACCESS). Refuses other addressing modes and undocumented
+    /// addresses.
     #[inline(always)]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ_ALL.inlined_request_to(route, &())
@@ -2134,8 +2051,6 @@ pub struct CharacteristicData {
 impl CharacteristicData {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<6>> = Signal::new("value", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("characteristic_data", FRAME.data(REGISTER_SELECTOR.place, 0x001));
@@ -2143,9 +2058,9 @@ impl CharacteristicData {
 
 impl Layout for CharacteristicData {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2168,8 +2083,6 @@ pub struct SerialNumber {
 impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<6>> = Signal::new("value", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("serial_number", FRAME.data(REGISTER_SELECTOR.place, 0x002));
@@ -2177,9 +2090,9 @@ impl SerialNumber {
 
 impl Layout for SerialNumber {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2201,8 +2114,6 @@ pub struct Barcode1 {
 impl Barcode1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("barcode_1", FRAME.data(REGISTER_SELECTOR.place, 0x003));
@@ -2210,9 +2121,9 @@ impl Barcode1 {
 
 impl Layout for Barcode1 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2234,8 +2145,6 @@ pub struct Barcode2 {
 impl Barcode2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("barcode_2", FRAME.data(REGISTER_SELECTOR.place, 0x004));
@@ -2243,9 +2152,9 @@ impl Barcode2 {
 
 impl Layout for Barcode2 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2276,8 +2185,6 @@ impl Versions {
     pub const DCDC: Signal<Bytes<2>> = Signal::new("dcdc", Place::bytes(4, 5));
     /// The signal `pfc`, to read or write it alone, or to ask for its limits.
     pub const PFC: Signal<Bytes<2>> = Signal::new("pfc", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("versions", FRAME.data(REGISTER_SELECTOR.place, 0x005));
@@ -2285,10 +2192,10 @@ impl Versions {
 
 impl Layout for Versions {
     const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::HARDWARE.put(self.hardware, payload)?;
@@ -2315,8 +2222,6 @@ pub struct HardwareAddress {
 impl HardwareAddress {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<2>> = Signal::new("value", Place::bytes(2, 3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
         READ_ALL_INFORMATION_ACCESS.of("hardware_address", FRAME.data(REGISTER_SELECTOR.place, 0x006));
@@ -2324,9 +2229,9 @@ impl HardwareAddress {
 
 impl Layout for HardwareAddress {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -2350,14 +2255,12 @@ pub struct ELabel {
     pub text: Text<1200>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ELabel {
     /// The signal `text`, to read or write it alone, or to ask for its limits.
     pub const TEXT: LongText<Text<1200>> = LongText::new(0, Signal::new("text", Place::byte(0))).at_least(0);
 
-    /// Builds the request [`read_text`](READ_TEXT_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_text`](READ_TEXT_ACCESS). Refuses other addressing modes and undocumented
+    /// addresses.
     #[inline(always)]
     pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<ELabelPart>, Error> {
         ELabelPart::READ_TEXT.inlined_request_to(route, &())
@@ -2389,17 +2292,15 @@ impl ELabelPart {
     pub const PART: Signal<u16> = Signal::new("part", Place::bytes(0, 1)).limits(1, 200);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_text`, for filters and blank frames of it.
     pub const READ_TEXT: Exchange = READ_TEXT_ACCESS.of("e_label", FRAME);
 }
 
 impl Layout for ELabelPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::PART.put(self.part, payload)?;
@@ -2442,7 +2343,6 @@ pub struct OutputVoltageSetting {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltageSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2450,33 +2350,26 @@ impl OutputVoltageSetting {
         .scale(1, 1024)
         .limits(41.0, 58.600_585_937_5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(REGISTER_SELECTOR.place, 0x100));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<OutputVoltageSetting> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
         OutputVoltageSetting::SET.inlined_request_within(self.model, route, &self.values)
@@ -2485,9 +2378,9 @@ impl Within<OutputVoltageSetting> {
 
 impl Layout for OutputVoltageSetting {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -2513,7 +2406,6 @@ pub struct DefaultOutputVoltage {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DefaultOutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2521,33 +2413,26 @@ impl DefaultOutputVoltage {
         .scale(1, 1024)
         .limits(48.0, 58.5)
         .model_limits(DEFAULT_OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x101));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<DefaultOutputVoltage> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
         DefaultOutputVoltage::SET.inlined_request_within(self.model, route, &self.values)
@@ -2556,9 +2441,9 @@ impl Within<DefaultOutputVoltage> {
 
 impl Layout for DefaultOutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -2582,7 +2467,6 @@ pub struct OvervoltageProtection {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OvervoltageProtection {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7))
@@ -2590,33 +2474,26 @@ impl OvervoltageProtection {
         .scale(1, 1024)
         .limits(56.5, 60.5)
         .model_limits(OVERVOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection", FRAME.data(REGISTER_SELECTOR.place, 0x102));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<OvervoltageProtection> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtection>, Error> {
         OvervoltageProtection::SET.inlined_request_within(self.model, route, &self.values)
@@ -2625,9 +2502,9 @@ impl Within<OvervoltageProtection> {
 
 impl Layout for OvervoltageProtection {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -2660,7 +2537,6 @@ pub struct CurrentLimit {
     pub value_raw: i32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
@@ -2692,22 +2568,17 @@ impl CurrentLimit {
         }
     }
 
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x103));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2719,9 +2590,7 @@ impl CurrentLimit {
         Self::value_on(model)?.physical_of(self.value_raw)
     }
 
-    /// Sets `value` to a number of a device model.
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
+    /// Sets `value` to a number of a device model. Refuses one without a scale, and values outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("current_limit"))?;
         self.value_raw = signal.raw_of(value, "current_limit")?;
@@ -2729,11 +2598,9 @@ impl CurrentLimit {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<CurrentLimit> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<CurrentLimit>, Error> {
         CurrentLimit::SET.inlined_request_within(self.model, route, &self.values)
@@ -2742,9 +2609,9 @@ impl Within<CurrentLimit> {
 
 impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
@@ -2777,7 +2644,6 @@ pub struct DefaultCurrentLimit {
     pub value_raw: i32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl DefaultCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
@@ -2809,22 +2675,17 @@ impl DefaultCurrentLimit {
         }
     }
 
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("default_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x104));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2836,9 +2697,7 @@ impl DefaultCurrentLimit {
         Self::value_on(model)?.physical_of(self.value_raw)
     }
 
-    /// Sets `value` to a number of a device model.
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
+    /// Sets `value` to a number of a device model. Refuses one without a scale, and values outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::value_on(model).ok_or(Self::VALUE.without_scale("default_current_limit"))?;
         self.value_raw = signal.raw_of(value, "default_current_limit")?;
@@ -2846,11 +2705,9 @@ impl DefaultCurrentLimit {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<DefaultCurrentLimit> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultCurrentLimit>, Error> {
         DefaultCurrentLimit::SET.inlined_request_within(self.model, route, &self.values)
@@ -2859,9 +2716,9 @@ impl Within<DefaultCurrentLimit> {
 
 impl Layout for DefaultCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_raw, payload)
@@ -2886,20 +2743,16 @@ pub struct InputCurrentLimit {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputCurrentLimit {
     /// The signal `state`, to read or write it alone, or to ask for its limits.
     pub const STATE: Signal<LimitState> = Signal::new("state", Place::byte(3));
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<i32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("input_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x109));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2908,9 +2761,9 @@ impl InputCurrentLimit {
 
 impl Layout for InputCurrentLimit {
     const SIGNALS: AnySignals = &[&Self::STATE, &Self::CURRENT];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { state: Self::STATE.get(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::STATE.put(self.state, payload)?;
@@ -2935,7 +2788,6 @@ pub struct FanDuty {
     pub value_percent: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanDuty {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(2, 3))
@@ -2946,33 +2798,26 @@ impl FanDuty {
         .specials(&[(0, "auto")]);
     /// The value of `value` that stands for `auto`.
     pub const VALUE_AUTO: f64 = 0.0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("fan_duty", FRAME.data(REGISTER_SELECTOR.place, 0x114));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<FanDuty> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<FanDuty>, Error> {
         FanDuty::SET.inlined_request_within(self.model, route, &self.values)
@@ -2981,9 +2826,9 @@ impl Within<FanDuty> {
 
 impl Layout for FanDuty {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_percent, payload)
@@ -2999,18 +2844,14 @@ pub struct Standby {
     pub value: SwitchState,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Standby {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<SwitchState> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("standby", FRAME.data(REGISTER_SELECTOR.place, 0x132));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -3019,9 +2860,9 @@ impl Standby {
 
 impl Layout for Standby {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -3048,28 +2889,22 @@ pub struct FanMode {
     pub value: FanControl,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl FanMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FanControl> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
     /// The access `get`, for filters and blank frames of it.
     pub const GET: Exchange = GET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
-    /// Builds the request [`get`](GET_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.inlined_request_to(route, &())
@@ -3078,9 +2913,9 @@ impl FanMode {
 
 impl Layout for FanMode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -3108,8 +2943,6 @@ impl ReadyState {
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(3));
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("ready_state", FRAME.data(REGISTER_SELECTOR.place, 0x001))
@@ -3118,10 +2951,10 @@ impl ReadyState {
 
 impl Layout for ReadyState {
     const SIGNALS: AnySignals = &[&Self::READINESS, &Self::LOAD];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { readiness: Self::READINESS.get(data), load_percent: Self::LOAD.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::READINESS.put(self.readiness, payload)?;
@@ -3144,8 +2977,6 @@ pub struct CommonLoad {
 impl CommonLoad {
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("common_load", FRAME.data(REGISTER_SELECTOR.place, 0x002))
@@ -3154,9 +2985,9 @@ impl CommonLoad {
 
 impl Layout for CommonLoad {
     const SIGNALS: AnySignals = &[&Self::LOAD];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { load_percent: Self::LOAD.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LOAD.encode(self.load_percent, payload)
@@ -3186,8 +3017,6 @@ impl ActiveState {
     pub const ACTIVITY: Signal<Activity> = Signal::new("activity", Place::byte(5));
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("active_state", FRAME.data(REGISTER_SELECTOR.place, 0x003))
@@ -3196,10 +3025,10 @@ impl ActiveState {
 
 impl Layout for ActiveState {
     const SIGNALS: AnySignals = &[&Self::ACTIVITY, &Self::LOAD];
+    const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> =
         |data| Self { activity: Self::ACTIVITY.get(data), load_percent: Self::LOAD.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ACTIVITY.put(self.activity, payload)?;
@@ -3227,8 +3056,6 @@ impl StartUp10 {
     pub const NUMBER: Signal<Bytes<2>> = Signal::new("number", Place::bytes(0, 1));
     /// The signal `content`, to read or write it alone, or to ask for its limits.
     pub const CONTENT: Signal<Bytes<6>> = Signal::new("content", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `start_up`, for filters and blank frames of it.
     pub const START_UP: Exchange = START_UP_ACCESS.of("start_up_10", FRAME.id(Identifier::COMMAND, 0x10)).answers(&[
         None,
@@ -3243,9 +3070,9 @@ impl StartUp10 {
 
 impl Layout for StartUp10 {
     const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::CONTENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), content: Self::CONTENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::NUMBER.put(self.number, payload)?;
@@ -3269,8 +3096,6 @@ pub struct StartUp81 {
 impl StartUp81 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<8>> = Signal::new("value", Place::bytes(0, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `start_up`, for filters and blank frames of it.
     pub const START_UP: Exchange = START_UP_ACCESS.of("start_up_81", FRAME.id(Identifier::COMMAND, 0x81)).answers(&[
         None,
@@ -3285,9 +3110,9 @@ impl StartUp81 {
 
 impl Layout for StartUp81 {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -3419,24 +3244,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -68,7 +68,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -139,7 +138,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -1151,20 +1149,16 @@ pub struct SystemOutput {
     pub current_a: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.inlined_request_to(route, &())
@@ -1173,9 +1167,9 @@ impl SystemOutput {
 
 impl Layout for SystemOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1193,18 +1187,14 @@ pub struct ModuleCount {
     pub count: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
-    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.inlined_request_to(route, &())
@@ -1213,9 +1203,9 @@ impl ModuleCount {
 
 impl Layout for ModuleCount {
     const SIGNALS: AnySignals = &[&Self::COUNT];
+    const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::COUNT.put(self.count, payload)
@@ -1236,20 +1226,15 @@ pub struct ModuleOutput {
     pub current_a: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1258,9 +1243,9 @@ impl ModuleOutput {
 
 impl Layout for ModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.put(self.voltage_v, payload)?;
@@ -1291,7 +1276,6 @@ pub struct ModuleStatus {
     pub status_0: Status0,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleStatus {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
@@ -1303,14 +1287,10 @@ impl ModuleStatus {
     pub const STATUS_1: Signal<Status1> = Signal::new("status_1", Place::byte(6));
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1319,6 +1299,7 @@ impl ModuleStatus {
 
 impl Layout for ModuleStatus {
     const SIGNALS: AnySignals = &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
+    const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         group: Self::GROUP.get(data),
         temperature_c: Self::TEMPERATURE.get(data),
@@ -1327,7 +1308,6 @@ impl Layout for ModuleStatus {
         status_0: Self::STATUS_0.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)?;
@@ -1354,7 +1334,6 @@ pub struct InputVoltage {
     pub ca_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputVoltage {
     /// The signal `ab`, to read or write it alone, or to ask for its limits.
     pub const AB: Signal<u16, f64> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
@@ -1362,14 +1341,10 @@ impl InputVoltage {
     pub const BC: Signal<u16, f64> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1378,10 +1353,10 @@ impl InputVoltage {
 
 impl Layout for InputVoltage {
     const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::AB.encode(self.ab_v, payload)?;
@@ -1403,20 +1378,16 @@ pub struct SystemOutputFixed {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SystemOutputFixed {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed", FRAME.id(Identifier::COMMAND, 0x08));
 
-    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.inlined_request_to(route, &())
@@ -1425,10 +1396,10 @@ impl SystemOutputFixed {
 
 impl Layout for SystemOutputFixed {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1450,20 +1421,15 @@ pub struct ModuleOutputFixed {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleOutputFixed {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output_fixed", FRAME.id(Identifier::COMMAND, 0x09));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1472,10 +1438,10 @@ impl ModuleOutputFixed {
 
 impl Layout for ModuleOutputFixed {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1502,7 +1468,6 @@ pub struct ModuleLimits {
     pub rated_power_w: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ModuleLimits {
     /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new("maximum_voltage", Place::bytes(0, 1)).unit("V");
@@ -1513,14 +1478,10 @@ impl ModuleLimits {
         Signal::new("maximum_current", Place::bytes(4, 5)).unit("A").scale(1, 10);
     /// The signal `rated_power`, to read or write it alone, or to ask for its limits.
     pub const RATED_POWER: Signal<u16, f64> = Signal::new("rated_power", Place::bytes(6, 7)).unit("W").scale(10, 1);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_limits", FRAME.id(Identifier::COMMAND, 0x0A));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1530,6 +1491,7 @@ impl ModuleLimits {
 impl Layout for ModuleLimits {
     const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE, &Self::MAXIMUM_CURRENT, &Self::RATED_POWER];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.get(data),
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.get(data),
@@ -1537,7 +1499,6 @@ impl Layout for ModuleLimits {
         rated_power_w: Self::RATED_POWER.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MAXIMUM_VOLTAGE.put(self.maximum_voltage_v, payload)?;
@@ -1563,18 +1524,13 @@ pub struct Barcode {
     pub value: BarcodeValue,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Barcode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<BarcodeValue> = Signal::new("value", Place::bytes(0, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode", FRAME.id(Identifier::COMMAND, 0x0B));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1583,9 +1539,9 @@ impl Barcode {
 
 impl Layout for Barcode {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1617,21 +1573,16 @@ pub struct ExternalVoltage {
     pub allowed_current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl ExternalVoltage {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `allowed_current`, to read or write it alone, or to ask for its limits.
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1640,10 +1591,10 @@ impl ExternalVoltage {
 
 impl Layout for ExternalVoltage {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1664,18 +1615,14 @@ pub struct SetWalkIn {
     pub walk_in: WalkIn,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1684,9 +1631,9 @@ impl SetWalkIn {
 
 impl Layout for SetWalkIn {
     const SIGNALS: AnySignals = &[&Self::WALK_IN];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::WALK_IN.put(self.walk_in, payload)
@@ -1704,18 +1651,14 @@ pub struct SetLed {
     pub led: Led,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1724,9 +1667,9 @@ impl SetLed {
 
 impl Layout for SetLed {
     const SIGNALS: AnySignals = &[&Self::LED];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::LED.put(self.led, payload)
@@ -1751,18 +1694,14 @@ pub struct SetGroup {
     pub group: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(0)).limits(1, 62);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1771,9 +1710,9 @@ impl SetGroup {
 
 impl Layout for SetGroup {
     const SIGNALS: AnySignals = &[&Self::GROUP];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::GROUP.put(self.group, payload)
@@ -1793,18 +1732,14 @@ pub struct SetSleep {
     pub sleep: Sleep,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetSleep {
     /// The signal `sleep`, to read or write it alone, or to ask for its limits.
     pub const SLEEP: Signal<Sleep> = Signal::new("sleep", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1813,9 +1748,9 @@ impl SetSleep {
 
 impl Layout for SetSleep {
     const SIGNALS: AnySignals = &[&Self::SLEEP];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::SLEEP.put(self.sleep, payload)
@@ -1839,12 +1774,9 @@ pub struct SwitchModules {
     pub power: Power,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A)).answers(&[
         Some(Who::One),
@@ -1853,9 +1785,8 @@ impl SwitchModules {
         Some(Who::Nobody),
     ]);
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1864,9 +1795,9 @@ impl SwitchModules {
 
 impl Layout for SwitchModules {
     const SIGNALS: AnySignals = &[&Self::POWER];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::POWER.put(self.power, payload)
@@ -1896,7 +1827,6 @@ pub struct SetTotalOutput {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetTotalOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3))
@@ -1906,33 +1836,26 @@ impl SetTotalOutput {
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `set_total`, for filters and blank frames of it.
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_TOTAL.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses values outside their
+    /// limits, other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetTotalOutput> {
-    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses other addressing modes
+    /// and undocumented addresses.
     #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<SetTotalOutput>, Error> {
         SetTotalOutput::SET_TOTAL.inlined_request_within(self.model, route, &self.values)
@@ -1941,10 +1864,10 @@ impl Within<SetTotalOutput> {
 
 impl Layout for SetTotalOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -1975,7 +1898,6 @@ pub struct SetModuleOutput {
     pub current_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetModuleOutput {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3))
@@ -1989,33 +1911,26 @@ impl SetModuleOutput {
         .scale(1, 1000)
         .limits(0.1, 50.0)
         .model_limits(OUTPUT_CURRENT_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<SetModuleOutput> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetModuleOutput>, Error> {
         SetModuleOutput::SET.inlined_request_within(self.model, route, &self.values)
@@ -2024,10 +1939,10 @@ impl Within<SetModuleOutput> {
 
 impl Layout for SetModuleOutput {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -2055,18 +1970,14 @@ pub struct SetAddressMode {
     pub mode: AddressMode,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAddressMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<AddressMode> = Signal::new("mode", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2075,9 +1986,9 @@ impl SetAddressMode {
 
 impl Layout for SetAddressMode {
     const SIGNALS: AnySignals = &[&Self::MODE];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)
@@ -2155,24 +2066,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

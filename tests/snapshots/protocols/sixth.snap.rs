@@ -57,7 +57,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -106,7 +105,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -877,8 +875,6 @@ impl MeasurementA {
     pub const MODE: Signal<ModeValue> = Signal::new("mode", Place::byte(6).bits(3, 1));
     /// The signal `counter`, to read or write it alone, or to ask for its limits.
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     /// The access `report_a`, for filters and blank frames of it.
     pub const REPORT_A: Exchange = REPORT_A_ACCESS.of("measurement_a", FRAME);
 }
@@ -886,6 +882,7 @@ impl MeasurementA {
 impl Layout for MeasurementA {
     const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE, &Self::POWER, &Self::OUTPUT, &Self::MODE, &Self::COUNTER];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
         current_a: Self::CURRENT.decode(data),
@@ -896,7 +893,6 @@ impl Layout for MeasurementA {
         counter: Self::COUNTER.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -934,14 +930,13 @@ impl MeasurementB {
     pub const FAN_SPEED: Signal<u16> = Signal::new("fan_speed", Place::bytes(4, 3)).unit("rpm");
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u8, f64> = Signal::new("load", Place::byte(5)).unit("%").scale(1, 2);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report_b`, for filters and blank frames of it.
     pub const REPORT_B: Exchange = REPORT_B_ACCESS.of("measurement_b", FRAME).length(6);
 }
 
 impl Layout for MeasurementB {
     const SIGNALS: AnySignals = &[&Self::INPUT, &Self::VOLTAGE, &Self::FAN_SPEED, &Self::LOAD];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         input: Self::INPUT.get(data),
         voltage_v: Self::VOLTAGE.decode(data),
@@ -949,7 +944,6 @@ impl Layout for MeasurementB {
         load_percent: Self::LOAD.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::INPUT.put(self.input, payload)?;
@@ -970,13 +964,10 @@ pub struct VoltageSetPoint {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl VoltageSetPoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 100).limits(42.0, 58.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).refusal(
         &FRAME
@@ -994,17 +985,14 @@ impl VoltageSetPoint {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
     }
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1013,9 +1001,9 @@ impl VoltageSetPoint {
 
 impl Layout for VoltageSetPoint {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1031,13 +1019,10 @@ pub struct CurrentLimit {
     pub value_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 10).limits(0.0, 125.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).refusal(
         &FRAME
@@ -1055,17 +1040,14 @@ impl CurrentLimit {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
     }
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1074,9 +1056,9 @@ impl CurrentLimit {
 
 impl Layout for CurrentLimit {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1092,12 +1074,9 @@ pub struct OutputSwitch {
     pub value: OutputCommand,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<OutputCommand> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).refusal(
         &FRAME
@@ -1115,17 +1094,14 @@ impl OutputSwitch {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
     }
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1134,9 +1110,9 @@ impl OutputSwitch {
 
 impl Layout for OutputSwitch {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1152,15 +1128,12 @@ pub struct MinimumFanSpeed {
     pub value_percent: u32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl MinimumFanSpeed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> =
         Signal::new("value", Place::bytes(7, 4)).unit("%").limits(0, 100).specials(&[(255, "automatic")]);
     /// The value of `value` that stands for `automatic`.
     pub const VALUE_AUTOMATIC: u32 = 255;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).refusal(
         &FRAME
@@ -1178,17 +1151,14 @@ impl MinimumFanSpeed {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
     }
 
-    /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1197,9 +1167,9 @@ impl MinimumFanSpeed {
 
 impl Layout for MinimumFanSpeed {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_percent, payload)
@@ -1214,12 +1184,9 @@ pub struct OutputVoltage {
     pub value_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200)).refusal(
         &FRAME
@@ -1229,9 +1196,7 @@ impl OutputVoltage {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1240,9 +1205,9 @@ impl OutputVoltage {
 
 impl Layout for OutputVoltage {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_v, payload)
@@ -1257,12 +1222,9 @@ pub struct OutputCurrent {
     pub value_a: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201)).refusal(
         &FRAME
@@ -1272,9 +1234,7 @@ impl OutputCurrent {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1283,9 +1243,9 @@ impl OutputCurrent {
 
 impl Layout for OutputCurrent {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_a, payload)
@@ -1301,7 +1261,6 @@ pub struct HeatSinkTemperature {
     pub value_c: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl HeatSinkTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4))
@@ -1312,8 +1271,6 @@ impl HeatSinkTemperature {
         .specials(&[(255, "sensor_broken")]);
     /// The value of `value` that stands for `sensor_broken`.
     pub const VALUE_SENSOR_BROKEN: f64 = 87.5;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
         READ_ACCESS.of("heat_sink_temperature", FRAME.data(INDEX_SELECTOR.place, 0x2202)).refusal(
@@ -1324,9 +1281,7 @@ impl HeatSinkTemperature {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1335,9 +1290,9 @@ impl HeatSinkTemperature {
 
 impl Layout for HeatSinkTemperature {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_c, payload)
@@ -1352,12 +1307,9 @@ pub struct InputFrequency {
     pub value_hz: f32,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(7, 4)).unit("Hz");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203)).refusal(
         &FRAME
@@ -1367,9 +1319,7 @@ impl InputFrequency {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1378,9 +1328,9 @@ impl InputFrequency {
 
 impl Layout for InputFrequency {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value_hz, payload)
@@ -1395,12 +1345,9 @@ pub struct OperatingTime {
     pub value_h: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl OperatingTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204)).refusal(
         &FRAME
@@ -1410,9 +1357,7 @@ impl OperatingTime {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1421,9 +1366,9 @@ impl OperatingTime {
 
 impl Layout for OperatingTime {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.encode(self.value_h, payload)
@@ -1438,12 +1383,9 @@ pub struct SerialNumber {
     pub value: Text<4>,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300)).refusal(
         &FRAME
@@ -1453,9 +1395,7 @@ impl SerialNumber {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1464,9 +1404,9 @@ impl SerialNumber {
 
 impl Layout for SerialNumber {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1481,12 +1421,9 @@ pub struct Firmware {
     pub value: FirmwareValue,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Firmware {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FirmwareValue> = Signal::new("value", Place::bytes(4, 6));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301)).refusal(
         &FRAME
@@ -1496,9 +1433,7 @@ impl Firmware {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1507,9 +1442,9 @@ impl Firmware {
 
 impl Layout for Firmware {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0xFF];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1524,12 +1459,9 @@ pub struct State {
     pub value: Conditions,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl State {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Conditions> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400)).refusal(
         &FRAME
@@ -1539,9 +1471,7 @@ impl State {
             .data(OPERATION_SELECTOR.place, 0x80),
     );
 
-    /// Builds the request [`read`](READ_ACCESS).
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.inlined_request_to(route, &())
@@ -1550,9 +1480,9 @@ impl State {
 
 impl Layout for State {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1570,17 +1500,15 @@ pub struct Refusal {
 impl Refusal {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<RefusalReason> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `refuse`, for filters and blank frames of it.
     pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
 }
 
 impl Layout for Refusal {
     const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VALUE.put(self.value, payload)
@@ -1597,18 +1525,14 @@ pub struct KeepAlive {
     pub outputs: KeepAliveOutputs,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new("outputs", Place::byte(1).bit(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFE, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
-    /// Builds the request [`tell`](TELL_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.inlined_request_to(route, self)
@@ -1617,9 +1541,9 @@ impl KeepAlive {
 
 impl Layout for KeepAlive {
     const SIGNALS: AnySignals = &[&Self::OUTPUTS];
+    const RESERVED: Data = [0x00, 0xFE, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::OUTPUTS.put(self.outputs, payload)
@@ -1697,16 +1621,13 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

@@ -83,7 +83,6 @@ impl Identifier {
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -131,7 +130,6 @@ impl Addressed for Message {
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Destination for Target {
     type Protocol = Message;
 
@@ -614,8 +612,6 @@ impl ReferenceValues {
     /// The signal `minimum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_VOLTAGE: Signal<u16, f64> =
         Signal::new("minimum_voltage", Place::bytes(6, 7)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("reference_values", FRAME.id(Identifier::COMMAND, 0x20));
 }
@@ -623,6 +619,7 @@ impl ReferenceValues {
 impl Layout for ReferenceValues {
     const SIGNALS: AnySignals =
         &[&Self::MODE, &Self::OPERATION, &Self::NOMINAL_VOLTAGE, &Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         mode: Self::MODE.get(data),
         operation: Self::OPERATION.get(data),
@@ -631,7 +628,6 @@ impl Layout for ReferenceValues {
         minimum_voltage_v: Self::MINIMUM_VOLTAGE.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)?;
@@ -671,14 +667,13 @@ impl OutputValues {
     pub const POWER: Signal<u16, f64> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(1, 10);
     /// The signal `status`, to read or write it alone, or to ask for its limits.
     pub const STATUS: Signal<Status> = Signal::new("status", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("output_values", FRAME.id(Identifier::COMMAND, 0x21));
 }
 
 impl Layout for OutputValues {
     const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::POWER, &Self::STATUS];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
         current_a: Self::CURRENT.decode(data),
@@ -686,7 +681,6 @@ impl Layout for OutputValues {
         status: Self::STATUS.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VOLTAGE.encode(self.voltage_v, payload)?;
@@ -724,21 +718,19 @@ impl TemperatureValues {
     pub const FAN_1: Signal<u16> = Signal::new("fan_1", Place::bytes(2, 3)).unit("rpm");
     /// The signal `fan_2`, to read or write it alone, or to ask for its limits.
     pub const FAN_2: Signal<u16> = Signal::new("fan_2", Place::bytes(4, 5)).unit("rpm");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("temperature_values", FRAME.id(Identifier::COMMAND, 0x22));
 }
 
 impl Layout for TemperatureValues {
     const SIGNALS: AnySignals = &[&Self::TEMPERATURE, &Self::FAN_1, &Self::FAN_2];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         temperature_c: Self::TEMPERATURE.get(data),
         fan_1_rpm: Self::FAN_1.get(data),
         fan_2_rpm: Self::FAN_2.get(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::TEMPERATURE.put(self.temperature_c, payload)?;
@@ -763,17 +755,15 @@ pub struct FirmwareVersion {
 impl FirmwareVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<Text<6>> = Signal::new("version", Place::bytes(0, 5));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("firmware_version", FRAME.id(Identifier::COMMAND, 0x23));
 }
 
 impl Layout for FirmwareVersion {
     const SIGNALS: AnySignals = &[&Self::VERSION];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::VERSION.put(self.version, payload)
@@ -799,17 +789,15 @@ impl RunningTime {
     pub const RUNNING: Signal<u32> = Signal::new("running", Place::bytes(0, 3)).unit("min");
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u32> = Signal::new("total", Place::bytes(4, 7)).unit("min");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("running_time", FRAME.id(Identifier::COMMAND, 0x25));
 }
 
 impl Layout for RunningTime {
     const SIGNALS: AnySignals = &[&Self::RUNNING, &Self::TOTAL];
+    const RESERVED: Data = [0x00; 8];
     const DECODE: Decode<Self> = |data| Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::RUNNING.put(self.running_min, payload)?;
@@ -835,17 +823,15 @@ pub struct ReplacementAdvice {
 impl ReplacementAdvice {
     /// The signal `advice`, to read or write it alone, or to ask for its limits.
     pub const ADVICE: Signal<Advice> = Signal::new("advice", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("replacement_advice", FRAME.id(Identifier::COMMAND, 0x27));
 }
 
 impl Layout for ReplacementAdvice {
     const SIGNALS: AnySignals = &[&Self::ADVICE];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ADVICE.put(self.advice, payload)
@@ -887,7 +873,6 @@ pub struct Control {
     pub voltage_v: f64,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Control {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<ControlMode> = Signal::new("mode", Place::byte(0));
@@ -899,33 +884,26 @@ impl Control {
         .scale(1, 10)
         .limits(18.5, 59.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
 
-    /// Returns the values for a device model if it takes them.
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
         Ok(Within { values: self, model })
     }
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl Within<Control> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Control::SET.inlined_request_within(self.model, route, &self.values)
@@ -934,13 +912,13 @@ impl Within<Control> {
 
 impl Layout for Control {
     const SIGNALS: AnySignals = &[&Self::MODE, &Self::OPERATION, &Self::VOLTAGE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
         mode: Self::MODE.get(data),
         operation: Self::OPERATION.get(data),
         voltage_v: Self::VOLTAGE.decode(data),
     };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::MODE.put(self.mode, payload)?;
@@ -966,18 +944,14 @@ pub struct SetAddress {
     pub address: u8,
 }
 
-#[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
 impl SetAddress {
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0)).limits(224, 239);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));
 
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes, and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -986,9 +960,9 @@ impl SetAddress {
 
 impl Layout for SetAddress {
     const SIGNALS: AnySignals = &[&Self::ADDRESS];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
 
-    #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
     #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ADDRESS.put(self.address, payload)
@@ -1026,24 +1000,20 @@ pub type Request<R> = canspec_runtime::Request<Message, R>;
 pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
-    /// Recognises a frame.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Recognises a frame, or says why it does not.
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// # Errors
-    /// Says why the frame is not recognised.
+    /// Or says why it does not.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
 
-#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;

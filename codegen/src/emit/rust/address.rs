@@ -132,7 +132,7 @@ fn module(Target { variant, number, .. }: &Target) -> TokenStream {
 }
 
 fn destination(variants: &[Target], ways: &[Way], derives: Derives) -> TokenStream {
-    let (expected, inlined) = (derives.with_inlined(), derives.inlined());
+    let inlined = derives.inlined();
     let modes = variants.iter().map(|Target { variant, mode, number, .. }| {
         let (index, number) = (Literal::usize_unsuffixed(mode.place()), number.map(|_| quote!((_))));
         quote!(Self::#variant #number => #index)
@@ -148,7 +148,6 @@ fn destination(variants: &[Target], ways: &[Way], derives: Derives) -> TokenStre
             #module
         }
 
-        #expected
         impl Destination for Target {
             type Protocol = Message;
 

@@ -24,12 +24,6 @@ impl<'a> Derives<'a> {
         }
     }
 
-    /// Emits the attribute of an `impl` with such functions.
-    pub fn with_inlined(self) -> Option<TokenStream> {
-        let reason = "a call takes more than most messages do";
-        (self.options.goal == Goal::Speed).then(|| quote!(#[expect(clippy::inline_always, reason = #reason)]))
-    }
-
     /// Emits the name of the method of an exchange that builds a request.
     pub fn request_to(self) -> Ident {
         self.of_goal("request_to")

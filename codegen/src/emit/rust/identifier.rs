@@ -55,7 +55,6 @@ fn directions(Identifier { foreign, heading, documented, .. }: &Identifier) -> T
     let head = head(heading);
     let documented = documented_modes(documented);
     quote! {
-        #[expect(clippy::inline_always, reason = "only decoding calls it")]
         impl IdentifierFields for Identifier {
             const FROM_RAW: fn(u32) -> Self = Self::from_raw;
             const TO_RAW: fn(Self) -> u32 = Self::to_raw;

@@ -26,14 +26,13 @@ pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
     let bare = transfer.iter().flat_map(|transfer| transfer.bare.iter().map(|own| bare(own, transfer)));
     let transferred = transfer.as_ref().filter(|_| !fields.is_empty()).map(|transfer| transferred(name, transfer));
     let signals = fields.iter().map(|field| signal(field, name));
-    let (inlined, requests) = message::requests(requests, derives);
+    let requests = requests.iter().map(|known| message::request(known, derives));
     let parts = parts.iter().map(in_parts);
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
     let optional = if fields.is_empty() { derives.message(name, true) } else { derives.long_message(name) };
     quote! {
         #definition
-        #inlined
         impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#parts)* #(#transfers)* #(#bare)* #(#by_model)* }
         #layout
         #transferred

@@ -41,20 +41,18 @@ fn member(Signal { coding, member, .. }: &Signal, count: usize, derives: Derives
 }
 
 fn constants(message: &Message, own: &Struct, derives: Derives) -> TokenStream {
-    let Struct { name, is_home, reserved, requests, within, .. } = own;
+    let Struct { name, is_home, requests, within, .. } = own;
     let signals = message.signals.iter().filter(|_| *is_home).map(|known| signal(known, name));
     let owner = if *is_home { quote!(Self) } else { message.home.to_token_stream() };
     let by_model = own.signals.iter().filter_map(|id| scales::methods(&message.signals[*id], &owner));
-    let reserved = reserved.iter().map(|(comment, bits)| quote!(#comment pub const RESERVED: Data = #bits;));
     let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
-    let (inlined, requests) = self::requests(requests, derives);
+    let requests = requests.iter().map(|known| request(known, derives));
     let of_model = within.as_ref().map(|Within { requests, .. }| {
-        let (inlined, requests) =
-            (derives.with_inlined(), requests.iter().map(|known| request_of_model(known, derives)));
-        quote!(#inlined impl Within<#name> { #(#requests)* })
+        let requests = requests.iter().map(|known| request_of_model(known, derives));
+        quote!(impl Within<#name> { #(#requests)* })
     });
     let within = within.as_ref().map(self::within);
-    quote!(#inlined impl #name { #(#signals)* #(#reserved)* #(#exchanges)* #within #(#requests)* #(#by_model)* } #of_model)
+    quote!(impl #name { #(#signals)* #(#exchanges)* #within #(#requests)* #(#by_model)* } #of_model)
 }
 
 fn signal(signal: &Signal, owner: &Ident) -> TokenStream {
@@ -100,9 +98,7 @@ pub fn special_value(Special { constant, comment, value }: &Special, signal: &Si
 /// Emits the method that tests values against a device model.
 fn within(Within { exchange, .. }: &Within) -> TokenStream {
     quote! {
-        /// Returns the values for a device model if it takes them.
-        /// # Errors
-        /// Refuses a model that does not have the message, and values outside its limits.
+        /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
         pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
             #exchange.within(model, &self)?;
             Ok(Within { values: self, model })
@@ -110,16 +106,8 @@ fn within(Within { exchange, .. }: &Within) -> TokenStream {
     }
 }
 
-/// Emits the attribute of an `impl`, and its methods that build requests.
-pub fn requests<'a>(
-    known: impl IntoIterator<Item = &'a Request>,
-    derives: Derives,
-) -> (Option<TokenStream>, Vec<TokenStream>) {
-    let requests: Vec<_> = known.into_iter().map(|known| request(known, derives)).collect();
-    (derives.with_inlined().filter(|_| !requests.is_empty()), requests)
-}
-
-fn request(known: &Request, derives: Derives) -> TokenStream {
+/// Emits the method that builds a request.
+pub fn request(known: &Request, derives: Derives) -> TokenStream {
     let Request { method, comment, exchange, reply, carries } = known;
     let (inlined, request_to) = (derives.inlined(), derives.request_to());
     let (receiver, content) = if *carries { (quote!(&self,), quote!(self)) } else { (quote!(), quote!(&())) };
@@ -146,7 +134,7 @@ fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request, 
 
 /// Emits how values are read and written.
 fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
-    let Struct { name, is_home, signals, members, lengths, .. } = own;
+    let Struct { name, is_home, signals, members, lengths, reserved, .. } = own;
     let home = &message.home;
     let owner = if *is_home { quote!(Self) } else { quote!(#home) };
     let signals: Vec<_> = signals.iter().map(|id| &message.signals[*id]).collect();
@@ -168,12 +156,13 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
     let writes: Vec<_> = writes.collect();
     let (last, others) = writes.split_last()?;
     let end = (!lengths.is_empty()).then(|| end(message, lengths));
+    let reserved = reserved.as_ref().map(|(comment, bits)| quote!(#comment const RESERVED: Data = #bits;));
     Some(quote! {
         impl Layout for #name {
             const SIGNALS: AnySignals = &[#(&#owner::#constants),*];
+            #reserved
             const DECODE: Decode<Self> = |data| #decode;
             #sized
-            #[expect(clippy::inline_always, reason = "a call takes more than most messages do")]
             #[inline(always)]
             fn encode(&self, payload: &mut Payload) -> Result<(), Error> { #end #(#others?;)* #last }
         }

@@ -20,7 +20,6 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(plan, first);
     let further: Vec<_> = functions.iter().flat_map(|parts| parts.iter().skip(1)).collect();
-    let inlines = (!further.is_empty()).then(inlines);
     let decoding = quote! {
         #definition
 
@@ -33,11 +32,8 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
         /// A frame that answers a request.
         pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
-        #inlines
         impl Message {
-            /// Recognises a frame.
-            /// # Errors
-            /// Says why the frame is not recognised.
+            /// Recognises a frame, or says why it does not.
             #[inline]
             pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
                 Received::decode(frame)
@@ -55,8 +51,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
 fn decode_for() -> TokenStream {
     quote! {
         /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-        /// # Errors
-        /// Says why the frame is not recognised.
+        /// Or says why it does not.
         #[inline]
         pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
             Received::decode_for(model, frame)
@@ -142,10 +137,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
     let truths = truths(plan);
     let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
-    let recognises = [&plan.requests, &plan.replies, &plan.either].into_iter().any(Option::is_some);
-    let inlines = recognises.then(inlines);
     quote! {
-        #inlines
         impl Protocol for Message {
             type Identifier = Identifier;
             const FRAME: Filter = FRAME;
@@ -162,11 +154,6 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             #(#functions)*
         }
     }
-}
-
-/// Says that some functions always become part of their caller.
-fn inlines() -> TokenStream {
-    quote!(#[expect(clippy::inline_always, reason = "only decoding calls them")])
 }
 
 /// Names what is true of the protocol, and not of every one.

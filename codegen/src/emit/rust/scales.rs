@@ -56,7 +56,9 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
     let given = quote!(signal.raw_of(value, #message)?);
     let given = if member.is_optional { quote!(Some(#given)) } else { given };
     let reads = format!(" Returns the number that `{name}` is on a device model; `None` if it is none.");
-    let sets = format!(" Sets `{name}` to a number of a device model.");
+    let sets = format!(
+        " Sets `{name}` to a number of a device model. Refuses one without a scale, and values outside its limits."
+    );
     Some(quote! {
         #[doc = #reads]
         #[must_use]
@@ -65,8 +67,6 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
         }
 
         #[doc = #sets]
-        /// # Errors
-        /// Refuses a model without a scale, and a value outside its limits.
         pub fn #set(&mut self, model: Model, value: #kind) -> Result<(), Error> {
             let signal = #owner::#on(model).ok_or(#owner::#constant.without_scale(#message))?;
             self.#value = #given;

@@ -27,9 +27,9 @@ fn definition(name: &Ident, Set { comment, is_exact, members, .. }: &Set, derive
 fn implementation(message: &Message, set: &Set, derives: Derives) -> TokenStream {
     let name = &message.home;
     let exchanges = message.exchanges.iter().map(exchange);
-    let (inlined, own) = message::requests(message.structs.iter().flat_map(|known| &known.requests), derives);
+    let own = message.structs.iter().flat_map(|known| &known.requests).map(|known| message::request(known, derives));
     let split = set.requests.as_ref().map(|known| requests(known, &set.members));
-    quote!(#inlined impl #name { #(#exchanges)* #(#own)* #split })
+    quote!(impl #name { #(#exchanges)* #(#own)* #split })
 }
 
 /// Emits the method that builds a request for each member.

@@ -61,8 +61,8 @@ pub struct Struct {
     pub lengths: Vec<Length>,
     /// Whether equality is exact.
     pub is_exact: bool,
-    /// The bits that the document reserves and their comment, if it has signals.
-    pub reserved: Option<(Comment, TokenStream)>,
+    /// The bits that the document reserves, if it has signals, and a comment if they are not sent as zeros.
+    pub reserved: Option<(Option<Comment>, TokenStream)>,
     /// The methods that build requests.
     pub requests: Vec<Request>,
     /// The values within the limits of a device model.
@@ -233,9 +233,9 @@ impl Planner<'_> {
 
     /// Plans the method that builds the frames of a message in parts.
     fn sending_parts(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
-        let mut comment = self.request_comment(frame, " with these values, in parts", "values outside their limits, ");
-        comment[0] = comment[0].replacen("Builds", "Builds the frames of", 1);
-        Request { comment: Comment::new(comment), ..self.request(host, ways, frame) }
+        let comment = self.request_comment(frame, " with these values, in parts", "values outside their limits");
+        let comment = comment.replacen("Builds", "Builds the frames of", 1);
+        Request { comment: Comment::line(comment), ..self.request(host, ways, frame) }
     }
 
     /// Plans how a transport carries a long message.
@@ -256,28 +256,24 @@ impl Planner<'_> {
     fn sending(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
         let shared = self.accesses.constant(frame.message, frame.exchange);
         let access = &self.context.protocol[frame.access].name;
-        let first = format!(
+        let comment = Comment::line(format!(
             "Returns what sends the {} [`{access}`]({shared}) with these values. The data are written to \
-             `buffer`, for which `LONGEST` bytes are enough.",
+             `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits, other addressing \
+             modes, undocumented addresses, and a buffer with too few bytes.",
             frame.kind.name()
-        );
-        let errors = "Refuses values outside their limits, other addressing modes, undocumented addresses, and a \
-                      buffer with too few bytes.";
-        let comment = Comment::new([first, "# Errors".to_owned(), errors.to_owned()]);
+        ));
         Request { comment, carries: true, ..self.request(host, ways, frame) }
     }
 
     /// Plans the method that sends what carries nothing by a transport.
     fn sending_nothing(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
-        let mut comment = self.request_comment(frame, "", "");
-        comment[0] = comment[0].replacen("Builds", "Returns what sends", 1);
-        Request { comment: Comment::new(comment), ..self.request(host, ways, frame) }
+        let comment = self.request_comment(frame, "", "").replacen("Builds", "Returns what sends", 1);
+        Request { comment: Comment::line(comment), ..self.request(host, ways, frame) }
     }
 
     fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
         let carries = !frame.signals.is_empty();
-        let (values, refused) =
-            if carries { (" with these values", "values outside their limits, ") } else { ("", "") };
+        let (values, refused) = if carries { (" with these values", "values outside their limits") } else { ("", "") };
         let reply = match self.reply(frame) {
             None => quote!(()),
             Some(name) if name == host.name => quote!(Self),
@@ -285,7 +281,7 @@ impl Planner<'_> {
         };
         Request {
             method: ways.methods[frame.exchange].clone(),
-            comment: Comment::new(self.request_comment(frame, values, refused)),
+            comment: Comment::line(self.request_comment(frame, values, refused)),
             exchange: self.exchange_path(host, ways, frame),
             reply,
             carries,
@@ -298,7 +294,7 @@ impl Planner<'_> {
         let exchange = &ways.constants[frame.exchange];
         let reply = self.reply(frame).map_or_else(|| quote!(()), |name| quote!(#name));
         Request {
-            comment: Comment::new(self.request_comment(frame, " with these values", "")),
+            comment: Comment::line(self.request_comment(frame, " with these values", "")),
             exchange: quote!(#owner::#exchange),
             reply,
             ..self.request(host, ways, frame)
@@ -306,12 +302,15 @@ impl Planner<'_> {
     }
 
     /// Describes a method. The access describes what holds for all messages.
-    fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> Vec<String> {
-        let protocol = self.context.protocol;
+    fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> String {
         let shared = self.accesses.constant(frame.message, frame.exchange);
-        let first = format!("Builds the {} [`{}`]({shared}){values}.", frame.kind.name(), protocol[frame.access].name);
-        let errors = format!("Refuses {refused}other addressing modes, and undocumented addresses.");
-        vec![first, "# Errors".to_owned(), errors]
+        let (kind, access) = (frame.kind.name(), &self.context.protocol[frame.access].name);
+        let refused = if refused.is_empty() {
+            "other addressing modes and".to_owned()
+        } else {
+            format!("{refused}, other addressing modes, and")
+        };
+        format!("Builds the {kind} [`{access}`]({shared}){values}. Refuses {refused} undocumented addresses.")
     }
 
     /// Returns the struct that the reply carries.
@@ -375,10 +374,7 @@ fn lengths(message: &model::Message, frame: &FrameLayout) -> Vec<Length> {
 }
 
 /// Writes the bits of the data that neither signals nor selectors cover.
-fn reserved(frame: &FrameLayout) -> (Comment, TokenStream) {
-    let sent = u8::from(frame.reserved.are_ones);
-    let comment = Comment::line(format!(
-        "The data bits that the document reserves. Requests send {sent}; `Received::reserved` returns set ones."
-    ));
+fn reserved(frame: &FrameLayout) -> (Option<Comment>, TokenStream) {
+    let comment = frame.reserved.are_ones.then(|| Comment::line("Requests send ones in these bits."));
     (comment, literal::data(frame.uncovered().to_be_bytes()))
 }

@@ -123,12 +123,11 @@ impl Planner<'_> {
         let (id, own) = message.exchanges.entries().next()?;
         let known = &self.messages[self.id];
         let (access, shared) = (&self.protocol[own.access], &known.exchanges[id].shared);
-        let first = format!(
-            "Builds the requests [`{}`]({shared}), one for each member in the order in which they are sent.",
+        let comment = Comment::line(format!(
+            "Builds the requests [`{}`]({shared}), one for each member in the order in which they are sent. Refuses \
+             other addressing modes and undocumented addresses.",
             access.name
-        );
-        let errors = "Refuses other addressing modes, and undocumented addresses.".to_owned();
-        let comment = Comment::new([first, "# Errors".to_owned(), errors]);
+        ));
         Some(Requests { method: known.methods[id].clone(), comment })
     }
 
