@@ -156,12 +156,14 @@ impl MonthValue {
 
     /// Returns the text, or `None` if it would not give the same value.
     #[must_use]
+    #[inline]
     pub fn text(self) -> Option<PackedText> {
         Word::text(self)
     }
 
     /// Reads a text of the documented form.
     #[must_use]
+    #[inline]
     pub fn parse(text: &str) -> Option<Self> {
         Word::parse(text)
     }

@@ -87,6 +87,7 @@ impl ConditionsPack {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Off => 0,
@@ -97,12 +98,14 @@ impl ConditionsPack {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }

@@ -95,6 +95,7 @@ impl State {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Idle => 0,
@@ -105,12 +106,14 @@ impl State {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }

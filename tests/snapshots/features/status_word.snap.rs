@@ -166,12 +166,14 @@ impl State {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }

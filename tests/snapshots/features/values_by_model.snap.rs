@@ -177,6 +177,7 @@ impl SetModeMode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Idle => 0,
@@ -187,12 +188,14 @@ impl SetModeMode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }

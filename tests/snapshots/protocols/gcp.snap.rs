@@ -539,6 +539,7 @@ impl ErrorCode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Normal => 0,
@@ -551,12 +552,14 @@ impl ErrorCode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -600,6 +603,7 @@ impl OperatingMode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Dcdc => 160,
@@ -610,12 +614,14 @@ impl OperatingMode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -652,6 +658,7 @@ impl WalkIn {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Disabled => 0,
@@ -662,12 +669,14 @@ impl WalkIn {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -709,6 +718,7 @@ impl Led {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Normal => 0,
@@ -719,12 +729,14 @@ impl Led {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -763,6 +775,7 @@ impl Power {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::On => 0,
@@ -773,12 +786,14 @@ impl Power {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -845,12 +860,14 @@ impl Status2 {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -930,12 +947,14 @@ impl Status1 {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -1000,12 +1019,14 @@ impl Status0 {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }

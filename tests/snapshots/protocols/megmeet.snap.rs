@@ -424,6 +424,7 @@ impl CommandCode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::RealTimeData => 64,
@@ -437,12 +438,14 @@ impl CommandCode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -491,6 +494,7 @@ impl SenderCode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Module => 0,
@@ -501,12 +505,14 @@ impl SenderCode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -549,6 +555,7 @@ impl MoreCode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Last => 0,
@@ -559,12 +566,14 @@ impl MoreCode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -627,6 +636,7 @@ impl HeaderErrorType {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Normal => 0,
@@ -644,12 +654,14 @@ impl HeaderErrorType {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -696,6 +708,7 @@ impl Supply {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Single => 0,
@@ -706,12 +719,14 @@ impl Supply {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -748,6 +763,7 @@ impl Phases {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::SinglePhase => 0,
@@ -758,12 +774,14 @@ impl Phases {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -798,6 +816,7 @@ impl InputType {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::AcAndOther => 3,
@@ -807,12 +826,14 @@ impl InputType {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -849,6 +870,7 @@ impl OutputType {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::V48 => 0,
@@ -859,12 +881,14 @@ impl OutputType {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -925,6 +949,7 @@ impl Efficiency {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::From90To91 => 1,
@@ -943,12 +968,14 @@ impl Efficiency {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -996,6 +1023,7 @@ impl Power {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::On => 0,
@@ -1006,12 +1034,14 @@ impl Power {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1048,6 +1078,7 @@ impl Reset {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Forbid => 0,
@@ -1058,12 +1089,14 @@ impl Reset {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1100,6 +1133,7 @@ impl Flicker {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Forbid => 0,
@@ -1110,12 +1144,14 @@ impl Flicker {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1155,6 +1191,7 @@ impl Assignment {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Forbid => 0,
@@ -1165,12 +1202,14 @@ impl Assignment {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1215,6 +1254,7 @@ impl Light {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Auto => 0,
@@ -1227,12 +1267,14 @@ impl Light {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1270,6 +1312,7 @@ impl Shielding {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::NoShield => 0,
@@ -1280,12 +1323,14 @@ impl Shielding {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1330,6 +1375,7 @@ impl AddressMode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Hardware => 0,
@@ -1341,12 +1387,14 @@ impl AddressMode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1388,6 +1436,7 @@ impl AutoBoot {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u16 {
         match self {
             Self::Automatic => 43_690,
@@ -1398,12 +1447,14 @@ impl AutoBoot {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1440,6 +1491,7 @@ impl Scan {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Disabled => 0,
@@ -1450,12 +1502,14 @@ impl Scan {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -1497,12 +1551,14 @@ impl ExtendedShield {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -1584,12 +1640,14 @@ impl Shield {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -1654,12 +1712,14 @@ impl ExtendedAlarms {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -1755,12 +1815,14 @@ impl Alarms {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }

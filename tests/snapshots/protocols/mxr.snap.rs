@@ -485,6 +485,7 @@ impl HeaderFunction {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Set => 3,
@@ -497,12 +498,14 @@ impl HeaderFunction {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -546,6 +549,7 @@ impl HeaderResult {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Normal => 240,
@@ -556,12 +560,14 @@ impl HeaderResult {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -603,6 +609,7 @@ impl AddressMode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::Automatic => 0,
@@ -613,12 +620,14 @@ impl AddressMode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -655,6 +664,7 @@ impl Power {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::StartUp => 0,
@@ -665,12 +675,14 @@ impl Power {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -707,6 +719,7 @@ impl Reset {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::Disabled => 0,
@@ -717,12 +730,14 @@ impl Reset {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -762,6 +777,7 @@ impl Relevance {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::Enabled => 0,
@@ -772,12 +788,14 @@ impl Relevance {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -816,6 +834,7 @@ impl InputMode {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::Ac => 1,
@@ -826,12 +845,14 @@ impl InputMode {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -879,6 +900,7 @@ impl ActiveInput {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::SinglePhaseAc => 1,
@@ -891,12 +913,14 @@ impl ActiveInput {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -988,12 +1012,14 @@ impl Alarms {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }

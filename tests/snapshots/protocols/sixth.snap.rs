@@ -308,6 +308,7 @@ impl HeaderOperation {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Read => 64,
@@ -321,12 +322,14 @@ impl HeaderOperation {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -369,6 +372,7 @@ impl MeasurementAOutput {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Off => 0,
@@ -379,12 +383,14 @@ impl MeasurementAOutput {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -430,6 +436,7 @@ impl ModeValue {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Standby => 0,
@@ -443,12 +450,14 @@ impl ModeValue {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -494,6 +503,7 @@ impl Input {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::None => 0,
@@ -505,12 +515,14 @@ impl Input {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -547,6 +559,7 @@ impl OutputCommand {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::On => 1,
@@ -557,12 +570,14 @@ impl OutputCommand {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -602,6 +617,7 @@ impl RefusalReason {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u32 {
         match self {
             Self::NoSuchIndex => 1,
@@ -613,12 +629,14 @@ impl RefusalReason {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -659,6 +677,7 @@ impl KeepAliveOutputs {
 
     /// Returns the raw number.
     #[must_use]
+    #[inline]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Off => 0,
@@ -669,12 +688,14 @@ impl KeepAliveOutputs {
 
     /// Returns the name, unless the value has none.
     #[must_use]
+    #[inline]
     pub fn name(self) -> Option<&'static str> {
         Word::name(self)
     }
 
     /// Finds a value by its name.
     #[must_use]
+    #[inline]
     pub fn from_name(name: &str) -> Option<Self> {
         Word::named(name)
     }
@@ -730,12 +751,14 @@ impl Conditions {
     }
 
     /// Returns the set bits that have a name, the lowest first.
+    #[inline]
     pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
         Word::set_bits(self)
     }
 
     /// Returns the set bits that have no name.
     #[must_use]
+    #[inline]
     pub fn unknown(self) -> u64 {
         Word::unknown(self)
     }
@@ -786,12 +809,14 @@ impl FirmwareValue {
 
     /// Returns the text, or `None` if it would not give the same value.
     #[must_use]
+    #[inline]
     pub fn text(self) -> Option<PackedText> {
         Word::text(self)
     }
 
     /// Reads a text of the documented form.
     #[must_use]
+    #[inline]
     pub fn parse(text: &str) -> Option<Self> {
         Word::parse(text)
     }

@@ -32,18 +32,21 @@ pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
 
             /// Returns the raw number.
             #[must_use]
+            #[inline]
             pub const fn raw(self) -> #raw {
                 match self { #(Self::#variants => #raws,)* Self::#unknown(raw) => raw }
             }
 
             /// Returns the name, unless the value has none.
             #[must_use]
+            #[inline]
             pub fn name(self) -> Option<&'static str> {
                 Word::name(self)
             }
 
             /// Finds a value by its name.
             #[must_use]
+            #[inline]
             pub fn from_name(name: &str) -> Option<Self> {
                 Word::named(name)
             }
@@ -90,12 +93,14 @@ pub fn status_word(StatusWord { name, comment, raw, bits }: &StatusWord, derives
             }
 
             /// Returns the set bits that have a name, the lowest first.
+            #[inline]
             pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
                 Word::set_bits(self)
             }
 
             /// Returns the set bits that have no name.
             #[must_use]
+            #[inline]
             pub fn unknown(self) -> u64 {
                 Word::unknown(self)
             }
@@ -136,12 +141,14 @@ pub fn packed(packed: &Packed, derives: Derives) -> TokenStream {
 
             /// Returns the text, or `None` if it would not give the same value.
             #[must_use]
+            #[inline]
             pub fn text(self) -> Option<PackedText> {
                 Word::text(self)
             }
 
             /// Reads a text of the documented form.
             #[must_use]
+            #[inline]
             pub fn parse(text: &str) -> Option<Self> {
                 Word::parse(text)
             }
