@@ -60,14 +60,12 @@ fn operation(binary: &ExprBinary, shape: Shape) -> Option<String> {
 /// Lays out the fields of a struct, each on its line.
 fn structure(known: &ExprStruct, shape: Shape) -> Option<String> {
     let nested = shape.nested();
-    let fields: Option<Vec<_>> = known.fields.iter().map(|known| field(known, nested)).collect();
+    let fields = known.fields.iter().map(|known| Some(field(known, nested)? + ","));
+    let rest = known.rest.iter().map(|rest| Some(format!("..{}", nested.line().behind(2).rewrite(rest)?)));
+    let lines: Option<Vec<_>> = fields.chain(rest).collect();
     let start = line_break(nested.indent);
-    let fields: String = fields?.iter().map(|field| format!("{start}{field},")).collect();
-    let rest = match &known.rest {
-        Some(rest) => format!("{start}..{}", nested.line().behind(2).rewrite(rest)?),
-        None => String::new(),
-    };
-    Some(format!("{} {{{fields}{rest}{}}}", tokens(&known.path), line_break(shape.indent)))
+    let lines = lines?.join(&start);
+    Some(format!("{} {{{start}{lines}{}}}", tokens(&known.path), line_break(shape.indent)))
 }
 
 fn field(known: &FieldValue, shape: Shape) -> Option<String> {
