@@ -198,12 +198,9 @@ impl<P: Protocol> Headed for IncomingOf<P> {
 /// would make decoders save registers.
 #[inline(always)]
 fn refused<P: Protocol>(id: u32, bytes: &[u8]) -> Problem {
+    let Some(length) = u8::try_from(bytes.len()).ok().filter(|length| *length <= 8) else { return Problem::Frame };
     let data = if P::DATA_SELECTORS { padded(bytes) } else { Data::default() };
-    match u8::try_from(bytes.len()) {
-        Ok(length @ ..=8) if P::LENGTH.is_some() => problem::<P>(id, length, data),
-        Ok(length @ ..=8) => unrecognised::<P>(id, length, data),
-        _ => Problem::Frame,
-    }
+    if P::LENGTH.is_some() { problem::<P>(id, length, data) } else { unrecognised::<P>(id, length, data) }
 }
 
 /// The same as [`problem`], as one function for many messages.

@@ -151,11 +151,20 @@ fn a_frame_of_a_controller_is_no_reply_of_a_group() {
 }
 
 /// A frame that is no classic data frame.
+#[derive(Clone, Copy)]
 struct Strange {
+    id: u32,
     data: [u8; 12],
     length: usize,
     is_remote: bool,
     is_data: bool,
+}
+
+impl Strange {
+    /// Returns a frame with its identifier.
+    fn shown(&self) -> Frame {
+        Frame::new_raw(self.id, self.id > 0x7FF, [0; 8], 4)
+    }
 }
 
 impl embedded_can::Frame for Strange {
@@ -168,7 +177,7 @@ impl embedded_can::Frame for Strange {
     }
 
     fn is_extended(&self) -> bool {
-        true
+        embedded_can::Frame::is_extended(&self.shown())
     }
 
     fn is_remote_frame(&self) -> bool {
@@ -180,7 +189,7 @@ impl embedded_can::Frame for Strange {
     }
 
     fn id(&self) -> embedded_can::Id {
-        frame(0x0107_F003, [0; 4]).id()
+        self.shown().id()
     }
 
     fn dlc(&self) -> usize {
@@ -196,7 +205,7 @@ impl embedded_can::Frame for Strange {
 fn what_is_no_classic_data_frame_is_no_reply() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     let data = [2, 0xF0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-    let strange = |length| Strange { data, length, is_remote: false, is_data: true };
+    let strange = |length| Strange { id: 0x0107_F003, data, length, is_remote: false, is_data: true };
     let values = |strange| request.reply(&strange).map(|reply| reply.values);
     assert_eq!(values(strange(4)), Some(Ok(Heat { power_w: 0.0 })));
     assert_eq!(values(strange(8)), Some(Err(Failure::Length)));
@@ -204,7 +213,8 @@ fn what_is_no_classic_data_frame_is_no_reply() {
     let error = Strange { is_data: false, ..strange(4) };
     let filter = request.replies().filter().expect("one heater replies");
     assert!(filter.matches(&strange(4)) && !filter.matches(&remote) && !filter.matches(&error));
-    for strange in [strange(9), strange(12), remote, error] {
+    let short = [strange(9), remote, error].map(|strange| Strange { id: 0x107, ..strange });
+    for strange in [strange(9), strange(12), remote, error].into_iter().chain(short) {
         assert_eq!(Received::<Message>::decode(&strange).map(|_| ()), Err(Problem::Frame));
         assert_eq!(values(strange), None);
     }
@@ -234,6 +244,8 @@ fn problems_are_tested_in_order() {
     assert_eq!(problem(frame(0x0107_F0F0, [1, 0, 0, 0])), Problem::Identifier);
     assert_eq!(problem(Frame::new_raw(0x0109_03F0, true, [0; 8], 1)), Problem::UnknownMessage);
     assert_eq!(problem(Frame::new_raw(0x0107_03F0, true, [9; 8], 3)), Problem::Length);
+    assert_eq!(problem(Frame::new_raw(0x0100_0000, true, [0; 8], 8)), Problem::Foreign);
+    assert_eq!(problem(Frame::new_raw(0x1307_03F0, true, [1; 8], 8)), Problem::Identifier);
     assert_eq!(problem(frame(0x0107_03F0, [9, 0, 0, 0])), Problem::UnknownMessage);
 }
 

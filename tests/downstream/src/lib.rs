@@ -22,6 +22,11 @@ pub mod rectifier {
     canspec_runtime::include_protocol!("rectifier");
 }
 
+/// Cars, chargers and testers, as `specs/tester.yaml` describes them.
+pub mod tester {
+    canspec_runtime::include_protocol!("tester");
+}
+
 /// Energy meters, as `specs/meter.yaml` describes them.
 pub mod meter {
     canspec_runtime::include_protocol!("meter");

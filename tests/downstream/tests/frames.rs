@@ -26,6 +26,8 @@ fn a_reply_has_the_printed_values() {
     assert_eq!((status.rope_m, status.temperature_c), (12.34, 25.0));
     assert!(status.state.contains(State::OVERLOAD | State::BRAKED));
     assert!(!status.state.contains(State::SLACK_ROPE));
+    assert!(status.state.intersects(State::OVERLOAD | State::SLACK_ROPE));
+    assert!(!status.state.intersects(State::SLACK_ROPE));
     let names = status.state.set_bits().map(|bit| bit.name);
     assert!(names.eq(["braked", "overload"]));
 }

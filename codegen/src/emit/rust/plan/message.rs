@@ -233,8 +233,8 @@ impl Planner<'_> {
 
     /// Plans the method that builds the frames of a message in parts.
     fn sending_parts(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
-        let comment = self.request_comment(frame, " with these values, in parts", "values outside their limits");
-        let comment = comment.replacen("Builds", "Builds the frames of", 1);
+        let (values, refused) = (" with these values, in parts", "values outside their limits");
+        let comment = self.request_comment("Builds the frames of", frame, values, refused);
         Request { comment: Comment::line(comment), ..self.request(host, ways, frame) }
     }
 
@@ -267,7 +267,7 @@ impl Planner<'_> {
 
     /// Plans the method that sends what carries nothing by a transport.
     fn sending_nothing(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
-        let comment = self.request_comment(frame, "", "").replacen("Builds", "Returns what sends", 1);
+        let comment = self.request_comment("Returns what sends", frame, "", "");
         Request { comment: Comment::line(comment), ..self.request(host, ways, frame) }
     }
 
@@ -281,7 +281,7 @@ impl Planner<'_> {
         };
         Request {
             method: ways.methods[frame.exchange].clone(),
-            comment: Comment::line(self.request_comment(frame, values, refused)),
+            comment: Comment::line(self.request_comment("Builds", frame, values, refused)),
             exchange: self.exchange_path(host, ways, frame),
             reply,
             carries,
@@ -294,15 +294,15 @@ impl Planner<'_> {
         let exchange = &ways.constants[frame.exchange];
         let reply = self.reply(frame).map_or_else(|| quote!(()), |name| quote!(#name));
         Request {
-            comment: Comment::line(self.request_comment(frame, " with these values", "")),
+            comment: Comment::line(self.request_comment("Builds", frame, " with these values", "")),
             exchange: quote!(#owner::#exchange),
             reply,
             ..self.request(host, ways, frame)
         }
     }
 
-    /// Describes a method. The access describes what holds for all messages.
-    fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> String {
+    /// Describes what a method does and refuses. The access describes what holds for all messages.
+    fn request_comment(&self, does: &str, frame: &FrameLayout, values: &str, refused: &str) -> String {
         let shared = self.accesses.constant(frame.message, frame.exchange);
         let (kind, access) = (frame.kind.name(), &self.context.protocol[frame.access].name);
         let refused = if refused.is_empty() {
@@ -310,7 +310,7 @@ impl Planner<'_> {
         } else {
             format!("{refused}, other addressing modes, and")
         };
-        format!("Builds the {kind} [`{access}`]({shared}){values}. Refuses {refused} undocumented addresses.")
+        format!("{does} the {kind} [`{access}`]({shared}){values}. Refuses {refused} undocumented addresses.")
     }
 
     /// Returns the struct that the reply carries.
