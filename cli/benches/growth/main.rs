@@ -17,6 +17,9 @@ use cost::{Cost, instructions};
 /// How many messages of four signals a spec has.
 const MESSAGES: [u32; 5] = [10, 100, 1_000, 4_000, 10_000];
 
+/// How many messages, each with an enum of its own, a crate has.
+const BUILT: [u32; 3] = [10, 100, 1_000];
+
 /// Lines of the logs that are decoded as a whole.
 const LENGTHS: [u32; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
 
@@ -52,6 +55,7 @@ const LOGGED: u32 = 4_000;
 fn main() -> io::Result<()> {
     let folder = tempfile::tempdir()?;
     of_messages(folder.path())?;
+    of_builds(folder.path())?;
     of_lines(folder.path())?;
     println!(
         "\n| what grows | how many | `check` | `compile` | `export dbc` | `import dbc` | `export wireshark` | `list` \
@@ -87,6 +91,46 @@ fn of_messages(folder: &Path) -> io::Result<()> {
         println!("| {count} | {check} | {compile} | {rust} | {line} ns | {instructions} |");
     }
     Ok(())
+}
+
+/// Prints what a release build of generated code costs, once its dependencies are built.
+fn of_builds(folder: &Path) -> io::Result<()> {
+    println!("\n| messages with an enum | release build | memory |\n|--:|--:|--:|");
+    let root = folder.join("built");
+    write_crate(&root)?;
+    build(&root)?;
+    write(&root, "src/lib.rs", "pub mod synthetic;\n")?;
+    for count in BUILT {
+        let spec = write(folder, "synthetic.yaml", &specs::enums(count))?;
+        cost(&[Path::new("compile"), &spec, Path::new("--out"), &root.join("src")])?;
+        println!("| {count} | {} |", cells(&build(&root)?));
+    }
+    Ok(())
+}
+
+/// Writes a crate without code that depends on the runtime.
+fn write_crate(root: &Path) -> io::Result<()> {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let manifest = format!(
+        "[package]\nname = \"built\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
+         canspec-runtime = {{ path = '{}' }}\n",
+        workspace.join("runtime").display()
+    );
+    fs::create_dir_all(root.join("src"))?;
+    fs::copy(workspace.join("Cargo.lock"), root.join("Cargo.lock"))?;
+    write(root, "Cargo.toml", &manifest)?;
+    write(root, "src/lib.rs", "").map(|_| ())
+}
+
+/// Builds a crate for release, and returns what that takes.
+fn build(root: &Path) -> io::Result<Cost> {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["build", "--release", "--offline", "--quiet"]).current_dir(root);
+    cargo.env("CARGO_INCREMENTAL", "0").env("CARGO_TARGET_DIR", root.join("target"));
+    match Cost::of(&mut cargo)? {
+        (cost, true) => Ok(cost),
+        (_, false) => Err(io::Error::other("generated code is not built")),
+    }
 }
 
 /// Prints what logs of more and more lines cost, each decoded as a table and as JSON.

@@ -37,6 +37,20 @@ pub fn messages(count: u32) -> String {
     spec("messages:\n", count, |number| message(number, "{bytes: 4, type: temperature}"), "")
 }
 
+/// Returns a spec of `count` messages, each with named values of its own.
+pub fn enums(count: u32) -> String {
+    spec(
+        "messages:\n",
+        count,
+        |number| {
+            let names = format!("{{0: off_{number}, 1: on_{number}, 2: waiting_{number}, 3: failed_{number}}}");
+            let message = message(number, "{bytes: 4, type: temperature}");
+            message.replace("{bytes: 5..6}", &format!("{{bytes: 5..6, values: {names}}}"))
+        },
+        "",
+    )
+}
+
 /// Returns a spec of `count` messages, each with two errors.
 pub fn errors(count: u32) -> String {
     spec("messages:\n", count, |number| message(number, "{bytes: 3, type: missing}"), "")
