@@ -6,7 +6,7 @@ use crate::{AnySignal, Data, Error, Frame, Payload};
 pub trait Layout: Sized + 'static {
     /// The signals, by first byte.
     const SIGNALS: AnySignals;
-    /// The data bits that the document reserves. Requests send zeros in them, unless their struct says something else.
+    /// The data bits that the document reserves. Requests send zeros there, or ones where a message says so.
     /// [`Received::reserved`](crate::Received::reserved) returns those that are set.
     const RESERVED: Data = [0; 8];
     /// Reads the values from the data of such a frame.
