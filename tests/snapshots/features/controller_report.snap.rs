@@ -147,7 +147,7 @@ impl Delivered {
         CHARGER_CYCLE_ACCESS.of("delivered", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)

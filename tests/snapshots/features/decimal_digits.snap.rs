@@ -218,7 +218,7 @@ impl Delay {
     pub const SET: Exchange = SET_ACCESS.of("delay", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -277,7 +277,7 @@ impl Output {
     pub const SET: Exchange = SET_ACCESS.of("output", FRAME.id(Identifier::COMMAND, 0x03));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -317,7 +317,7 @@ impl Month {
     pub const SET: Exchange = SET_ACCESS.of("month", FRAME.id(Identifier::COMMAND, 0x02));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)

@@ -397,7 +397,7 @@ impl TpSingleFrame {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -493,7 +493,7 @@ impl TpFirstFrame {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -556,7 +556,7 @@ impl TpConsecutiveFrame {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -666,7 +666,7 @@ impl TpFlowControl {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)

@@ -153,7 +153,7 @@ impl SetLimit {
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit", FRAME.id(Identifier::COMMAND, 0x003));
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -195,7 +195,7 @@ impl SetTotal {
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_total", FRAME.id(Identifier::COMMAND, 0x004));
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)

@@ -228,7 +228,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

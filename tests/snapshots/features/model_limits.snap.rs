@@ -199,7 +199,7 @@ impl SetSpeed {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -252,7 +252,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -272,7 +272,7 @@ impl Switch {
     pub const SET: Exchange = SET_ACCESS.of("switch", FRAME.id(Identifier::COMMAND, 0x1A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)

@@ -231,7 +231,7 @@ impl Limit {
     pub const SET: Exchange = SET_ACCESS.of("limit", FRAME.id(Identifier::COMMAND, 0x13)).length(1);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)

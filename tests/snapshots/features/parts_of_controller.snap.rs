@@ -135,7 +135,7 @@ impl Label {
     pub const TEXT: LongText<Text<17>> = LongText::new(3, Signal::new("text", Place::byte(0))).at_least(0);
 
     /// Builds the frames of the report [`tell`](TELL_ACCESS) with these values, in parts. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limitsother addressing modes and undocumented addresses.
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<parts::Frames<Self>, Error> {
         LabelPart::TELL.parts_to(route, self)
     }

@@ -258,7 +258,7 @@ impl Program {
     }
 
     /// Builds the frames of the request [`set`](SET_ACCESS) with these values, in parts. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limitsother addressing modes and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<parts::Frames<Self>, Error> {
         ProgramPart::SET.parts_to(route, self)
     }
@@ -360,7 +360,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -236,7 +236,7 @@ impl Limits {
     pub const OFFER: Exchange = OFFER_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x0001)).length(2);
 
     /// Builds the request [`offer`](OFFER_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn offer(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::OFFER.inlined_request_to(route, self)

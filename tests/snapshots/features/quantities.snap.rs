@@ -277,7 +277,7 @@ impl Control {
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x03)).length(4);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)

@@ -151,7 +151,7 @@ impl Speed {
     );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)

@@ -183,7 +183,7 @@ impl KeepAlive {
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.inlined_request_to(route, self)

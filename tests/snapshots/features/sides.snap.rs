@@ -169,7 +169,7 @@ impl Load {
     pub const TELL: Exchange = TELL_ACCESS.of("load", FRAME.id(Identifier::NUMBER, 0x002)).length(4);
 
     /// Builds the report [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.inlined_request_to(route, self)

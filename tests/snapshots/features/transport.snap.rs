@@ -331,7 +331,7 @@ impl TpRequestToSend {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -392,7 +392,7 @@ impl TpClearToSend {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -446,7 +446,7 @@ impl TpEndOfMessage {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -500,7 +500,7 @@ impl TpBroadcast {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -550,7 +550,7 @@ impl TpAbort {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -596,7 +596,7 @@ impl TpData {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)

@@ -136,7 +136,7 @@ impl Wanted {
     pub const DEMAND: Exchange = DEMAND_ACCESS.of("wanted", FRAME.id(Identifier::ID, 0x305));
 
     /// Builds the request [`demand`](DEMAND_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn demand(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::DEMAND.inlined_request_to(route, self)

@@ -1773,7 +1773,7 @@ impl Chm {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("chm", FRAME.id(Identifier::FORMAT, 0x26)).length(3);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -1867,7 +1867,7 @@ impl Crm {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("crm", FRAME.id(Identifier::FORMAT, 0x01));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2333,7 +2333,7 @@ impl Cts {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cts", FRAME.id(Identifier::FORMAT, 0x07)).length(7);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2429,7 +2429,7 @@ impl Cml {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cml", FRAME.id(Identifier::FORMAT, 0x08));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2511,7 +2511,7 @@ impl Cro {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -2773,7 +2773,7 @@ impl Ccs {
         .sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -3746,7 +3746,7 @@ impl Cst {
         );
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -3942,7 +3942,7 @@ impl Csd {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("csd", FRAME.id(Identifier::FORMAT, 0x1D));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -4126,7 +4126,7 @@ impl Cem {
         );
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.inlined_request_to(route, self)
@@ -4309,7 +4309,7 @@ impl Dm1Frame {
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm1::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4525,7 +4525,7 @@ impl Dm2Frame {
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm2::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4612,7 +4612,7 @@ impl Dm3 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4757,7 +4757,7 @@ impl Dm6Frame {
     pub const DATA_8: Signal<Bytes<1>> = Signal::new("data_8", Place::byte(7));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm6::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4850,7 +4850,7 @@ impl Rqst {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4900,7 +4900,7 @@ impl Ackm {
         .sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
-    /// their limits, other addressing modes, and undocumented addresses.
+    /// their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.inlined_request_to(route, self)
@@ -4959,7 +4959,7 @@ impl TpRequestToSend {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5021,7 +5021,7 @@ impl TpClearToSend {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5075,7 +5075,7 @@ impl TpEndOfMessage {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5133,7 +5133,7 @@ impl TpBroadcast {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5184,7 +5184,7 @@ impl TpAbort {
         );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)
@@ -5230,7 +5230,7 @@ impl TpData {
         .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.inlined_request_to(route, self)

@@ -1453,7 +1453,7 @@ impl LimitInputCurrent {
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.inlined_request_to(route, self)
@@ -1533,7 +1533,7 @@ impl SetOperatingMode {
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values. Refuses values
-    /// outside their limits, other addressing modes, and undocumented addresses.
+    /// outside their limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.inlined_request_to(route, self)
@@ -1614,7 +1614,7 @@ impl SetWalkIn {
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1686,7 +1686,7 @@ impl SetLed {
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1729,7 +1729,7 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1776,7 +1776,7 @@ impl SetTotalOutput {
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses values outside their
-    /// limits, other addressing modes, and undocumented addresses.
+    /// limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.inlined_request_to(route, self)
@@ -1824,7 +1824,7 @@ impl SetModuleOutput {
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1910,7 +1910,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -2389,7 +2389,7 @@ impl OutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2452,7 +2452,7 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2513,7 +2513,7 @@ impl OvervoltageProtection {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2607,7 +2607,7 @@ impl CurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2714,7 +2714,7 @@ impl DefaultCurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2781,7 +2781,7 @@ impl InputCurrentLimit {
     pub const SET: Exchange = SET_ACCESS.of("input_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x109));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2837,7 +2837,7 @@ impl FanDuty {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2880,7 +2880,7 @@ impl Standby {
     pub const SET: Exchange = SET_ACCESS.of("standby", FRAME.data(REGISTER_SELECTOR.place, 0x132));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2927,7 +2927,7 @@ impl FanMode {
     pub const GET: Exchange = GET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -3280,7 +3280,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -1648,7 +1648,7 @@ impl SetWalkIn {
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1684,7 +1684,7 @@ impl SetLed {
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1727,7 +1727,7 @@ impl SetGroup {
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1765,7 +1765,7 @@ impl SetSleep {
     pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1812,7 +1812,7 @@ impl SwitchModules {
     ]);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1872,7 +1872,7 @@ impl SetTotalOutput {
     }
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses values outside their
-    /// limits, other addressing modes, and undocumented addresses.
+    /// limits, other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.inlined_request_to(route, self)
@@ -1947,7 +1947,7 @@ impl SetModuleOutput {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2003,7 +2003,7 @@ impl SetAddressMode {
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2099,7 +2099,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -2138,7 +2138,7 @@ impl OutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2212,14 +2212,14 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -2292,14 +2292,14 @@ impl OvervoltageProtectionPoint {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -2363,7 +2363,7 @@ impl CurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2414,14 +2414,14 @@ impl DefaultCurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -2469,14 +2469,14 @@ impl WalkInTime {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -2528,14 +2528,14 @@ impl TotalRunningTime {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -2573,7 +2573,7 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(SIGNAL_SELECTOR.place, 0x132));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2606,7 +2606,7 @@ impl ResetOvervoltageLockout {
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout", FRAME.data(SIGNAL_SELECTOR.place, 0x133));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2641,7 +2641,7 @@ impl FlashGreenLight {
     pub const SET: Exchange = SET_ACCESS.of("flash_green_light", FRAME.data(SIGNAL_SELECTOR.place, 0x135));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2679,7 +2679,7 @@ impl AssignAddresses {
     pub const SET: Exchange = SET_ACCESS.of("assign_addresses", FRAME.data(SIGNAL_SELECTOR.place, 0x13A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2720,7 +2720,7 @@ impl ControlLights {
     pub const SET: Exchange = SET_ACCESS.of("control_lights", FRAME.data(SIGNAL_SELECTOR.place, 0x140));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2765,7 +2765,7 @@ impl ShieldAlarms {
     pub const SET: Exchange = SET_ACCESS.of("shield_alarms", FRAME.data(SIGNAL_SELECTOR.place, 0x142));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2802,14 +2802,14 @@ impl ShieldCommunicationAlarm {
     pub const STORE: Exchange = STORE_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3354,14 +3354,14 @@ impl AddressModeSwitch {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3424,14 +3424,14 @@ impl BarcodeVersion {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3478,14 +3478,14 @@ impl Barcode1 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3532,14 +3532,14 @@ impl Barcode2 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3586,14 +3586,14 @@ impl Barcode3 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3640,14 +3640,14 @@ impl Barcode4 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -3725,7 +3725,7 @@ impl RectifierCurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -3769,7 +3769,7 @@ impl PvCurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -3830,7 +3830,7 @@ impl RectifierOutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -3894,7 +3894,7 @@ impl PvOutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4141,14 +4141,14 @@ impl AutoBootSetting {
     pub const STORE: Exchange = STORE_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4193,7 +4193,7 @@ impl PvVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4275,7 +4275,7 @@ impl MpptSingleScan {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4323,14 +4323,14 @@ impl MpptScanCycle {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4375,7 +4375,7 @@ impl WindVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4420,7 +4420,7 @@ impl WindVoltageUpperLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4465,7 +4465,7 @@ impl WindVoltageLowerLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -4512,14 +4512,14 @@ impl CustomerInformation1 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4566,14 +4566,14 @@ impl CustomerInformation2 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4620,14 +4620,14 @@ impl CustomerInformation3 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4674,14 +4674,14 @@ impl CustomerInformation4 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4728,14 +4728,14 @@ impl CustomerInformation5 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4782,14 +4782,14 @@ impl CustomerInformation6 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4836,14 +4836,14 @@ impl CustomerInformation7 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -4890,14 +4890,14 @@ impl CustomerInformation8 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.inlined_request_to(route, self)
@@ -5359,7 +5359,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -1562,7 +1562,7 @@ impl SetAltitude {
     pub const SET: Exchange = SET_ACCESS.of("set_altitude", FRAME.data(REGISTER_SELECTOR.place, 0x0017));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1600,7 +1600,7 @@ impl SetOutputCurrent {
     pub const SET: Exchange = SET_ACCESS.of("set_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x001B));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1651,7 +1651,7 @@ impl SetGroup {
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.data(REGISTER_SELECTOR.place, 0x001E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1693,7 +1693,7 @@ impl SetAddressMode {
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.data(REGISTER_SELECTOR.place, 0x001F));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1727,7 +1727,7 @@ impl SetOutputPower {
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_power", FRAME.data(REGISTER_SELECTOR.place, 0x0020));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1766,7 +1766,7 @@ impl SetOutputVoltage {
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1814,7 +1814,7 @@ impl SetCurrentLimit {
     pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0022));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1851,7 +1851,7 @@ impl SetOvervoltagePoint {
     pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point", FRAME.data(REGISTER_SELECTOR.place, 0x0023));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1890,7 +1890,7 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(REGISTER_SELECTOR.place, 0x0030));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1924,7 +1924,7 @@ impl ResetOvervoltage {
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage", FRAME.data(REGISTER_SELECTOR.place, 0x0031));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1958,7 +1958,7 @@ impl SetOvervoltageRelevance {
     pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance", FRAME.data(REGISTER_SELECTOR.place, 0x003E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2072,7 +2072,7 @@ impl ResetShortCircuit {
     pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit", FRAME.data(REGISTER_SELECTOR.place, 0x0044));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -2106,7 +2106,7 @@ impl SetInputMode {
     pub const SET: Exchange = SET_ACCESS.of("set_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x0046));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.inlined_request_to(route, self)

@@ -1017,7 +1017,7 @@ impl VoltageSetPoint {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1072,7 +1072,7 @@ impl CurrentLimit {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1126,7 +1126,7 @@ impl OutputSwitch {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1183,7 +1183,7 @@ impl MinimumFanSpeed {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.inlined_request_to(route, self)
@@ -1557,7 +1557,7 @@ impl KeepAlive {
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
-    /// other addressing modes, and undocumented addresses.
+    /// other addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.inlined_request_to(route, self)

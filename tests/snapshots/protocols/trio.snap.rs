@@ -905,7 +905,7 @@ impl Control {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -962,7 +962,7 @@ impl SetAddress {
     pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
-    /// addressing modes, and undocumented addresses.
+    /// addressing modes and undocumented addresses.
     #[inline(always)]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.inlined_request_to(route, self)
@@ -1018,7 +1018,7 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    /// Or says why it does not.
+    /// Says why if there is none.
     #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)

@@ -273,7 +273,8 @@ impl Planner<'_> {
 
     fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
         let carries = !frame.signals.is_empty();
-        let (values, refused) = if carries { (" with these values", "values outside their limits") } else { ("", "") };
+        let (values, refused) =
+            if carries { (" with these values", "values outside their limits, ") } else { ("", "") };
         let reply = match self.reply(frame) {
             None => quote!(()),
             Some(name) if name == host.name => quote!(Self),
@@ -305,12 +306,10 @@ impl Planner<'_> {
     fn request_comment(&self, does: &str, frame: &FrameLayout, values: &str, refused: &str) -> String {
         let shared = self.accesses.constant(frame.message, frame.exchange);
         let (kind, access) = (frame.kind.name(), &self.context.protocol[frame.access].name);
-        let refused = if refused.is_empty() {
-            "other addressing modes and".to_owned()
-        } else {
-            format!("{refused}, other addressing modes, and")
-        };
-        format!("{does} the {kind} [`{access}`]({shared}){values}. Refuses {refused} undocumented addresses.")
+        format!(
+            "{does} the {kind} [`{access}`]({shared}){values}. Refuses {refused}other addressing modes and \
+             undocumented addresses."
+        )
     }
 
     /// Returns the struct that the reply carries.
