@@ -23,6 +23,10 @@ types:
   temperature: {as: signed, unit: °C}
 ";
 
+/// A signal with a scale and a sign, and one of two bytes.
+const TEMPERATURE: &str = "{bytes: 4, type: temperature}";
+const COUNT: &str = "{bytes: 5..6}";
+
 /// Members of a set, and sets of a member.
 const MEMBERS: u32 = 64;
 
@@ -34,7 +38,7 @@ fn spec(before: &str, count: u32, item: impl Fn(u32) -> String, behind: &str) ->
 
 /// Returns a spec of `count` messages of four signals.
 pub fn messages(count: u32) -> String {
-    spec("messages:\n", count, |number| message(number, "{bytes: 4, type: temperature}"), "")
+    spec("messages:\n", count, |number| message(number, TEMPERATURE, COUNT), "")
 }
 
 /// Returns a spec of `count` messages, each with named values of its own.
@@ -44,8 +48,7 @@ pub fn enums(count: u32) -> String {
         count,
         |number| {
             let names = format!("{{0: off_{number}, 1: on_{number}, 2: waiting_{number}, 3: failed_{number}}}");
-            let message = message(number, "{bytes: 4, type: temperature}");
-            message.replace("{bytes: 5..6}", &format!("{{bytes: 5..6, values: {names}}}"))
+            message(number, TEMPERATURE, &format!("{{bytes: 5..6, values: {names}}}"))
         },
         "",
     )
@@ -53,14 +56,14 @@ pub fn enums(count: u32) -> String {
 
 /// Returns a spec of `count` messages, each with two errors.
 pub fn errors(count: u32) -> String {
-    spec("messages:\n", count, |number| message(number, "{bytes: 3, type: missing}"), "")
+    spec("messages:\n", count, |number| message(number, "{bytes: 3, type: missing}", COUNT), "")
 }
 
-fn message(number: u32, temperature: &str) -> String {
+fn message(number: u32, temperature: &str, count: &str) -> String {
     format!(
         "  message_{number}:\n    section: \"1\"\n    match: {{command: {number}}}\n    access: [read]\n    fields:\n      \
          voltage: {{bytes: 0..1, type: voltage}}\n      current: {{bytes: 2..3, type: current}}\n      \
-         temperature: {temperature}\n      count: {{bytes: 5..6}}\n"
+         temperature: {temperature}\n      count: {count}\n"
     )
 }
 
