@@ -107,8 +107,7 @@ impl Protocols {
         let _ = writeln!(
             self.modules,
             "#[deny(warnings, missing_docs, unsafe_code)]\n\
-             #[allow(clippy::inline_always, clippy::missing_errors_doc)]\n\
-             pub mod {name} {{\n{manual}include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}",
+             pub mod {name} {{\n{manual}canspec_runtime::include_protocol!(\"{name}\"); }}",
         );
     }
 
