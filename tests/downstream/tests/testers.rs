@@ -1,7 +1,7 @@
 //! Where frames go between peers that all have addresses of their own.
 
 use winch_driver::tester::embedded_can::{ExtendedId, Frame as _};
-use winch_driver::tester::{Frame, Kind, Message, Problem, Target};
+use winch_driver::tester::{Frame, Kind, Limit, Message, Problem, Target};
 
 #[test]
 fn addresses_of_both_ends_show_where_a_frame_goes() {
@@ -15,7 +15,7 @@ fn addresses_of_both_ends_show_where_a_frame_goes() {
 
 #[test]
 fn a_tester_asks_under_its_own_usual_address() {
-    let limit = winch_driver::tester::Limit { current_a: 125.0 };
+    let limit = Limit { current_a: 125.0 };
     let sent = |target| limit.offer(target).map(|request| request.frame().to_string());
     assert_eq!(sent(Target::Service).as_deref(), Ok("0001FE21#04E2"));
     assert_eq!(sent(Target::Car).as_deref(), Ok("0001F456#04E2"));
