@@ -113,7 +113,7 @@ pub use timing::{Time, Timing};
 /// ```
 ///
 /// The name is that of the protocol in its spec. `canspec_codegen::Builder` writes the file, here
-/// `OUT_DIR/heater.rs`.
+/// `OUT_DIR/heater.rs`. Two of clippy's pedantic lints would complain about it, so they are silenced.
 #[macro_export]
 macro_rules! include_protocol {
     ($name:literal) => {
