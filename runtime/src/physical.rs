@@ -17,8 +17,8 @@ pub trait Physical<R: Raw>: Copy + Sync + 'static {
     /// Returns the value of a raw value.
     fn of(raw: R, scale: Option<Scale>) -> Self;
 
-    /// Returns the physical value.
-    fn number(self, scale: Option<Scale>) -> Number;
+    /// Returns the number: the physical value, or the raw value if this is it.
+    fn number(self) -> Number;
 
     /// Returns what an error keeps of a refused value.
     #[doc(hidden)]
@@ -46,13 +46,9 @@ impl<R: Raw + 'static> Physical<R> for R {
         raw
     }
 
-    #[inline]
-    fn number(self, scale: Option<Scale>) -> Number {
-        match (scale, Raw::number(self)) {
-            (Some(scale), Number::Signed(integer)) => scale.fraction(integer),
-            (Some(scale), Number::Unsigned(integer)) => scale.fraction(integer as i64),
-            (_, number) => number,
-        }
+    #[inline(always)]
+    fn number(self) -> Number {
+        Raw::number(self)
     }
 
     #[inline(always)]
@@ -73,6 +69,22 @@ impl<R: Raw + 'static> Physical<R> for R {
     fn write(signal: &'static Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
         signal.write_raw(number, payload)
     }
+}
+
+/// Returns the physical value of a number of steps. All types of signals share the code.
+pub(crate) fn of_steps(steps: Number, scale: Option<&Scale>) -> Number {
+    match (scale, steps) {
+        (Some(scale), Number::Signed(integer)) => scale.fraction(integer),
+        (Some(scale), Number::Unsigned(integer)) => scale.fraction(integer as i64),
+        _ => steps,
+    }
+}
+
+/// Returns the physical values of limits in steps, the lower one first. All types of signals share the code.
+pub(crate) fn limits_of_steps(steps: &(Number, Number), scale: Option<&Scale>) -> (Number, Number) {
+    let (minimum, maximum) = *steps;
+    let of = |steps| of_steps(steps, scale);
+    if scale.is_some_and(|scale| scale.is_falling()) { (of(maximum), of(minimum)) } else { (of(minimum), of(maximum)) }
 }
 
 /// The type of scaled physical values: `f64`, or `f32` for processors that calculate in single precision only.
@@ -232,8 +244,8 @@ macro_rules! scaled {
                 }
             }
 
-            #[inline]
-            fn number(self, _: Option<Scale>) -> Number {
+            #[inline(always)]
+            fn number(self) -> Number {
                 Scaled::number(self)
             }
 

@@ -177,6 +177,9 @@ impl<P: Protocol> Received<P> {
     }
 
     fn data_selectors(&self) -> &'static [Selector] {
+        if !P::DATA_SELECTORS {
+            return &[];
+        }
         self.exchange.filter(self.kind).map_or(&[], |filter| filter.data_selectors())
     }
 

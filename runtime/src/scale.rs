@@ -1,6 +1,10 @@
 //! Exact scaling between raw and physical values.
 
+use core::num::NonZero;
+
 use crate::Number;
+
+const ONE: NonZero<i64> = NonZero::new(1).expect("1 is not 0");
 
 /// A scale and an offset, both exact fractions: physical = raw × scale + offset.
 ///
@@ -18,8 +22,9 @@ use crate::Number;
 pub struct Scale {
     numerator: i64,
     denominator: i64,
-    /// The factor that makes `denominator` a common denominator of scale and offset.
-    factor: i64,
+    /// The factor that makes `denominator` a common denominator of scale and offset. It is never 0, so that a signal
+    /// without a scale takes no byte more.
+    factor: NonZero<i64>,
     /// The offset as numerator over the common denominator.
     offset: i64,
 }
@@ -31,14 +36,18 @@ impl Scale {
     /// Returns a scale without offset.
     pub const fn new(numerator: i64, denominator: i64) -> Self {
         let common = greatest_common_divisor(numerator, denominator);
-        Self { numerator: numerator / common, denominator: denominator / common, factor: 1, offset: 0 }
+        Self { numerator: numerator / common, denominator: denominator / common, factor: ONE, offset: 0 }
     }
 
     /// Returns the same scale with an offset in physical units.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `denominator` is 0. In a constant this is a compile error.
     #[must_use]
     pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
         let common = greatest_common_divisor(self.denominator, denominator);
-        let factor = denominator / common;
+        let factor = NonZero::new(denominator / common).expect("a fraction has no denominator 0");
         let offset = numerator.saturating_mul(self.denominator / common);
         Self { factor, offset, ..self }
     }
@@ -125,16 +134,14 @@ impl Scale {
     #[inline(always)]
     const fn exact_f32(self, physical: f32) -> f32 {
         let sum = physical * self.common_denominator() as f32;
-        (sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32
+        (sum - self.offset as f32) / self.numerator.saturating_mul(self.factor.get()) as f32
     }
 
     /// Returns the physical value of `raw` without floating-point arithmetic. All types of signals
     /// share the code, which is small because generated scales never overflow.
     #[inline(never)]
     pub(crate) const fn fraction(&self, raw: i64) -> Number {
-        let step = self.numerator.wrapping_mul(self.factor);
-        let numerator = raw.wrapping_mul(step).wrapping_add(self.offset);
-        Number::Fraction { numerator, denominator: self.denominator.wrapping_mul(self.factor) }
+        Number::Fraction { numerator: self.sum(raw), denominator: self.common_denominator() }
     }
 
     /// Returns the number of parts nearest to the physical value of `raw`, with ties away from zero. A unit has `parts`
@@ -156,8 +163,7 @@ impl Scale {
         else {
             return None;
         };
-        let step = self.numerator.wrapping_mul(self.factor);
-        match (sum.checked_sub(offset), step.checked_mul(parts)) {
+        match (sum.checked_sub(offset), self.step().checked_mul(parts)) {
             (Some(steps), Some(step)) => divided(steps, step),
             _ => None,
         }
@@ -166,12 +172,18 @@ impl Scale {
     /// Returns the physical value of `raw` as numerator over the common denominator.
     #[inline(always)]
     const fn sum(self, raw: i64) -> i64 {
-        raw.wrapping_mul(self.numerator.wrapping_mul(self.factor)).wrapping_add(self.offset)
+        raw.wrapping_mul(self.step()).wrapping_add(self.offset)
+    }
+
+    /// Returns what a step of the raw value adds to the numerator over the common denominator.
+    #[inline(always)]
+    const fn step(self) -> i64 {
+        self.numerator.wrapping_mul(self.factor.get())
     }
 
     #[inline(always)]
     const fn common_denominator(self) -> i64 {
-        self.denominator.wrapping_mul(self.factor)
+        self.denominator.wrapping_mul(self.factor.get())
     }
 }
 

@@ -11,7 +11,7 @@ mod tests;
 use core::marker::PhantomData;
 
 use crate::error::{Fault, Value};
-use crate::physical::Physical;
+use crate::physical::{Physical, limits_of_steps, of_steps};
 use crate::plumbing::Scale;
 use crate::raw::Raw;
 use crate::{Data, Error, Number, Payload, Place};
@@ -61,20 +61,23 @@ pub use quantity::{ReadNumber, SetNumber};
 /// assert_eq!(error.to_string(), "`voltage` of `set_output` is 800 V, but its limits are 0 and 750 V");
 /// # Ok::<(), canspec_runtime::Error>(())
 /// ```
+// The order of the fields is kept. What is the same for all types comes first, so programs have the code once that reads
+// it.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Signal<R: 'static, F: 'static = R> {
-    name: &'static str,
-    place: Place,
-    unit: Option<&'static str>,
     scale: Option<Scale>,
-    limits: Option<(F, F)>,
-    model_limits: &'static [(u8, Option<(F, F)>)],
+    name: &'static str,
+    unit: Option<&'static str>,
     specials: &'static [(i64, &'static str)],
-    has_absent: bool,
     /// What device models do not have, by number of the model.
     lacking: &'static [(u8, Lack)],
+    place: Place,
+    has_absent: bool,
     /// Whether a value has a meaning only on a device model.
     is_by_model: bool,
+    limits: Option<(F, F)>,
+    model_limits: &'static [(u8, Option<(F, F)>)],
     raw: PhantomData<R>,
 }
 
@@ -109,6 +112,10 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     /// Adds the offset `numerator` / `denominator`, in units of the physical value.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `denominator` is 0. In a constant this is a compile error.
     #[must_use]
     pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
         let scale = self.exact_scale().offset(numerator, denominator);
@@ -282,16 +289,11 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests the value that limits apply to.
     #[inline(always)]
     fn check(&'static self, value: F, payload: &Payload) -> Result<(), Error> {
-        let model = payload.model();
-        let is_legal = if F::IS_RAW { self.is_legal(value, model) } else { self.is_legal_physical(value, model) };
-        if is_legal { Ok(()) } else { Err(self.refused(Fault::Limits(value.told()), payload)) }
-    }
-
-    /// Tests a physical value. Small programs have the code once for all signals of a type, because comparing doubles is
-    /// large where the processor does not do it.
-    #[inline]
-    fn is_legal_physical(&self, value: F, model: Option<u8>) -> bool {
-        self.is_legal(value, model)
+        if self.is_legal(value, payload.model()) {
+            Ok(())
+        } else {
+            Err(self.refused(Fault::Limits(value.told()), payload))
+        }
     }
 
     /// Tests a value against the limits. None lies between them that is not finite.
@@ -311,15 +313,22 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         }
     }
 
-    /// Returns limits as physical values, the lower one first.
-    fn numbers(&self, (minimum, maximum): (F, F)) -> (Number, Number) {
-        let numbers = (minimum.number(self.scale), maximum.number(self.scale));
-        if F::IS_RAW { self.rising(numbers) } else { numbers }
+    /// Returns a value as a number in the unit.
+    #[inline(always)]
+    fn number(&self, value: F) -> Number {
+        of_steps(value.number(), self.steps())
     }
 
-    /// Returns the physical values of a lower and a higher raw value, the lower one first.
-    fn rising(&self, (one, other): (Number, Number)) -> (Number, Number) {
-        if self.scale.is_some_and(Scale::is_falling) { (other, one) } else { (one, other) }
+    /// Returns limits as numbers in the unit, the lower one first.
+    #[inline(always)]
+    fn numbers(&self, (minimum, maximum): (F, F)) -> (Number, Number) {
+        limits_of_steps(&(minimum.number(), maximum.number()), self.steps())
+    }
+
+    /// Returns the scale if values of the type `F` count its steps.
+    #[inline(always)]
+    const fn steps(&self) -> Option<&Scale> {
+        if F::IS_RAW { self.scale.as_ref() } else { None }
     }
 
     pub(crate) const fn is_scaled(&self) -> bool {

@@ -92,11 +92,9 @@ pub(crate) trait Refusable: Sync {
     /// Returns a refused value in the unit.
     fn told(&self, value: Value) -> Number;
 
-    /// Returns the least and the greatest number that a device model takes, if the document limits them.
-    fn legal(&self, model: Option<u8>) -> Option<(Number, Number)>;
-
-    /// Returns the least and the greatest number that the bits hold.
-    fn held(&self) -> (Number, Number);
+    /// Returns the least and the greatest number that a device model takes. They are those that the bits hold if the
+    /// document does not limit them, or if only the bits count.
+    fn limits(&self, model: Option<u8>, only_bits: bool) -> (Number, Number);
 
     /// Returns the name of a special raw value.
     fn special_name(&self, index: u32) -> &'static str;
@@ -135,16 +133,16 @@ impl ValueError {
     pub fn reason(&self) -> Reason {
         let Self { signal, model, .. } = *self;
         let unit = signal.own_unit();
-        let outside = |value, (minimum, maximum)| Reason::Limits { value, unit, minimum, maximum };
         match self.fault {
-            Fault::Limits(value) => match signal.told(value) {
-                value if !value.is_finite() => Reason::NotFinite,
-                value => outside(value, signal.legal(model).unwrap_or_else(|| signal.held())),
-            },
-            Fault::Width(value) => match signal.told(value) {
-                value if value.is_nan() => Reason::NotFinite,
-                value => outside(value, signal.held()),
-            },
+            Fault::Limits(value) | Fault::Width(value) => {
+                let (value, only_bits) = (signal.told(value), matches!(self.fault, Fault::Width(_)));
+                let is_number = if only_bits { !value.is_nan() } else { value.is_finite() };
+                if !is_number {
+                    return Reason::NotFinite;
+                }
+                let (minimum, maximum) = signal.limits(model, only_bits);
+                Reason::Limits { value, unit, minimum, maximum }
+            }
             Fault::Special(value, index) => {
                 let name = index.map_or("not_available", |index| signal.special_name(index));
                 Reason::Special { value: signal.told(value), unit, name }

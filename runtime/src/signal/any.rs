@@ -81,9 +81,7 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
         let meaning = match (self.special(bits), self.scale) {
             (Some(index), _) => Meaning::Name(self.special_name(index)),
             (None, _) if self.is_by_model => Meaning::None,
-            (None, Some(_)) if R::IS_NUMBER && value.is_finite() => {
-                Meaning::Number(self.physical(value).number(self.scale))
-            }
+            (None, Some(_)) if R::IS_NUMBER && value.is_finite() => Meaning::Number(self.number(self.physical(value))),
             (None, _) => value.meaning(),
         };
         let raw = if R::SIGNED { Number::Signed(bits as i64) } else { Number::Unsigned(bits) };
@@ -147,7 +145,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests a number with a fraction that is rounded to `raw`.
     fn check_fraction(&'static self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
-        let sent = self.physical(raw).number(self.scale).to_f64();
+        let sent = self.number(self.physical(raw)).to_f64();
         let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
         if is_exact || !payload.keeps_limits() || !self.check_model(raw.to_bits(), payload)? {
             return Ok(());

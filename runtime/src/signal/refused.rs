@@ -3,6 +3,7 @@
 use super::Signal;
 use crate::error::{Fault, Refusable, Value};
 use crate::physical::Physical;
+use crate::plumbing::Scale;
 use crate::raw::Raw;
 use crate::{Error, Number, Payload, ValueError};
 
@@ -19,6 +20,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     pub fn without_scale(&'static self, message: &'static str) -> Error {
         Error::Value(ValueError::new(message, self, Fault::Meaning, None))
     }
+
+    /// Returns the least and the greatest value that the bits hold.
+    fn held(&self) -> (F, F) {
+        let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)));
+        let is_falling = !F::IS_RAW && self.scale.is_some_and(Scale::is_falling);
+        if is_falling { (other, one) } else { (one, other) }
+    }
 }
 
 impl<R: Raw, F: Physical<R>> Refusable for Signal<R, F> {
@@ -32,18 +40,14 @@ impl<R: Raw, F: Physical<R>> Refusable for Signal<R, F> {
 
     fn told(&self, value: Value) -> Number {
         match value {
-            Value::Raw(bits) => self.physical(R::from_bits(bits)).number(self.scale),
+            Value::Raw(bits) => self.number(self.physical(R::from_bits(bits))),
             Value::Number(number) => number,
         }
     }
 
-    fn legal(&self, model: Option<u8>) -> Option<(Number, Number)> {
-        self.limits_in(model).map(|limits| self.numbers(limits))
-    }
-
-    fn held(&self) -> (Number, Number) {
-        let [one, other] = R::ends(self.place.max()).map(|bits| self.told(Value::Raw(bits)));
-        self.rising((one, other))
+    fn limits(&self, model: Option<u8>, only_bits: bool) -> (Number, Number) {
+        let legal = if only_bits { None } else { self.limits_in(model) };
+        self.numbers(legal.unwrap_or_else(|| self.held()))
     }
 
     fn special_name(&self, index: u32) -> &'static str {

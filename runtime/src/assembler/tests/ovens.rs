@@ -103,6 +103,7 @@ impl Protocol for Value {
     const FRAME: Filter = Filter::STANDARD;
     const NORMAL: Filter = Filter::STANDARD;
     const MODES: &'static [Mode] = &[SINGLE];
+    const DATA_SELECTORS: bool = true;
 
     fn request(frame: &Incoming) -> Result<Received<Self>, Problem> {
         found(frame).map_or_else(|| frame.unknown(), |exchange| frame.request(exchange, frame.values()))
