@@ -1,11 +1,15 @@
 //! How a message travels by an access.
 
+mod particulars;
+
 use core::ptr;
 
 use crate::address::{Addressing, Kind, Mode, Who};
-use crate::filter::{IdFilter, Required};
+use crate::filter::Required;
 use crate::plumbing::{Shown, Way};
-use crate::{Bits, Data, Error, Filter, Layout, Payload, Protocol};
+use crate::{Data, Error, Filter, Layout, Payload, Protocol};
+
+pub use particulars::{Particulars, Sent};
 
 /// How messages travel: the kinds of frames, what all of them show, and who answers.
 #[derive(Clone, Copy, Debug)]
@@ -15,9 +19,9 @@ pub struct Access {
     is_from_controller: bool,
     answers: &'static [Option<Who>],
     set: Option<&'static str>,
-    request: Option<Filter>,
-    reply: Option<Filter>,
-    report: Option<Filter>,
+    request: Option<&'static Filter>,
+    reply: Option<&'static Filter>,
+    report: Option<&'static Filter>,
 }
 
 impl Access {
@@ -49,20 +53,20 @@ impl Access {
 
     /// Adds what a request shows.
     #[must_use]
-    pub const fn request(self, request: Filter) -> Self {
+    pub const fn request(self, request: &'static Filter) -> Self {
         Self { request: Some(request), ..self }
     }
 
-    /// Adds what a reply shows.
+    /// Adds what a reply shows. A filter with selectors that tell errors is an [`accepting`](Filter::accepting) one.
     #[must_use]
-    pub const fn reply(self, reply: Filter) -> Self {
-        Self { reply: Some(reply.accepting()), ..self }
+    pub const fn reply(self, reply: &'static Filter) -> Self {
+        Self { reply: Some(reply), ..self }
     }
 
-    /// Adds what a report shows.
+    /// Adds what a report shows, as [`reply`](Self::reply) does.
     #[must_use]
-    pub const fn report(self, report: Filter) -> Self {
-        Self { report: Some(report.accepting()), ..self }
+    pub const fn report(self, report: &'static Filter) -> Self {
+        Self { report: Some(report), ..self }
     }
 
     /// Says that the controller sends the report. It goes where a request would go, and is built like
@@ -80,65 +84,14 @@ impl Access {
             message,
             own: own.required(),
             length: 8,
-            answers: self.answers,
             offered: offered(self.answers),
-            models: &[],
-            sent: None,
-            refusal: None,
+            particulars: None,
         }
     }
 
     /// Returns what a kind of frame shows, whatever the message.
     #[inline(always)]
-    const fn filter(&self, kind: Kind) -> Option<Filter> {
-        match kind {
-            Kind::Request => self.request,
-            Kind::Reply => self.reply,
-            Kind::Report => self.report,
-        }
-    }
-}
-
-/// What the frames of a message have that are built, although any is accepted there.
-#[derive(Clone, Copy, Debug)]
-pub struct Sent {
-    id: IdFilter,
-    request: Data,
-    reply: Data,
-    report: Data,
-}
-
-impl Sent {
-    /// Nothing.
-    pub const NOTHING: Self = Self { id: IdFilter::ANY, request: [0; 8], reply: [0; 8], report: [0; 8] };
-
-    /// Sets the value of a field of the identifier.
-    #[must_use]
-    pub const fn id(self, bits: Bits, value: u32) -> Self {
-        Self { id: self.id.id(bits, value), ..self }
-    }
-
-    /// Sets data bits that a request has as 1 although nothing names them.
-    #[must_use]
-    pub const fn request(self, ones: Data) -> Self {
-        Self { request: ones, ..self }
-    }
-
-    /// Sets data bits that a reply has as 1 although nothing names them.
-    #[must_use]
-    pub const fn reply(self, ones: Data) -> Self {
-        Self { reply: ones, ..self }
-    }
-
-    /// Sets data bits that a report has as 1 although nothing names them.
-    #[must_use]
-    pub const fn report(self, ones: Data) -> Self {
-        Self { report: ones, ..self }
-    }
-
-    /// Returns the data bits that a kind of frame has as 1 although nothing names them.
-    #[inline(always)]
-    const fn ones(&self, kind: Kind) -> Data {
+    const fn filter(&self, kind: Kind) -> Option<&'static Filter> {
         match kind {
             Kind::Request => self.request,
             Kind::Reply => self.reply,
@@ -158,42 +111,24 @@ pub struct Exchange {
     pub(crate) length: u8,
     /// The modes in which it is offered, as bits from the lowest on. Those beyond 8 have none.
     offered: u8,
-    pub(crate) answers: &'static [Option<Who>],
-    models: &'static [u8],
-    sent: Option<&'static Sent>,
-    pub(crate) refusal: Option<&'static Filter>,
+    particulars: Option<&'static Particulars>,
 }
 
 impl Exchange {
-    /// Sets who answers in each mode.
-    #[must_use]
-    pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
-        Self { answers, offered: offered(answers), ..self }
-    }
-
     /// Sets the number of data bytes of its frames.
     #[must_use]
     pub const fn length(self, length: u8) -> Self {
         Self { length, ..self }
     }
 
-    /// Sets the device models that have the message, by number. Without them every model has it.
+    /// Sets what only some messages have.
     #[must_use]
-    pub const fn models(self, models: &'static [u8]) -> Self {
-        Self { models, ..self }
-    }
-
-    /// Sets what its frames have that are built, although any is accepted there.
-    #[must_use]
-    pub const fn sending(self, sent: &'static Sent) -> Self {
-        Self { sent: Some(sent), ..self }
-    }
-
-    /// Adds the refusal, which answers a request in place of the reply. It is another message's
-    /// reply and says why.
-    #[must_use]
-    pub const fn refusal(self, refusal: &'static Filter) -> Self {
-        Self { refusal: Some(refusal), ..self }
+    pub const fn with(self, particulars: &'static Particulars) -> Self {
+        let offered = match particulars.answers {
+            Some(answers) => offered(answers),
+            None => self.offered,
+        };
+        Self { offered, particulars: Some(particulars), ..self }
     }
 
     /// Returns the name of the message.
@@ -214,10 +149,46 @@ impl Exchange {
     /// Returns what a kind of frame shows.
     #[inline(always)]
     pub const fn filter(&self, kind: Kind) -> Option<Filter> {
-        match (self.access.filter(kind), self.sent) {
+        match (self.access.filter(kind), self.sent()) {
             (Some(filter), None) => Some(filter.requiring(self.own)),
             (Some(filter), Some(sent)) => Some(filter.requiring(self.own).sending(sent.id).filled(sent.ones(kind))),
             (None, _) => None,
+        }
+    }
+
+    /// Returns who answers in each mode.
+    #[inline(always)]
+    pub(crate) const fn answers(&self) -> &'static [Option<Who>] {
+        match self.particulars {
+            Some(Particulars { answers: Some(answers), .. }) => answers,
+            _ => self.access.answers,
+        }
+    }
+
+    /// Returns the device models that have the message; none if every model has it.
+    #[inline(always)]
+    const fn models(&self) -> &'static [u8] {
+        match self.particulars {
+            Some(particulars) => particulars.models,
+            None => &[],
+        }
+    }
+
+    /// Returns what its frames have that are built, although any is accepted there.
+    #[inline(always)]
+    const fn sent(&self) -> Option<&'static Sent> {
+        match self.particulars {
+            Some(particulars) => particulars.sent,
+            None => None,
+        }
+    }
+
+    /// Returns what a refusal shows, which answers a request in place of the reply.
+    #[inline(always)]
+    pub(crate) const fn refusal(&self) -> Option<&'static Filter> {
+        match self.particulars {
+            Some(particulars) => particulars.refusal,
+            None => None,
         }
     }
 
@@ -239,13 +210,13 @@ impl Exchange {
     /// Tests whether a device model has the message. An unknown model has every message.
     #[inline]
     pub(crate) fn is_of(&self, model: Option<u8>) -> bool {
-        model.is_none_or(|model| self.models.is_empty() || self.models.contains(&model))
+        model.is_none_or(|model| self.models().is_empty() || self.models().contains(&model))
     }
 
     /// Tests whether each device model has the message.
     #[inline(always)]
     pub(crate) const fn is_of_each(&self) -> bool {
-        self.models.is_empty()
+        self.models().is_empty()
     }
 
     /// Tests the values of a request against the limits of a device model. Generated code calls it.
@@ -288,23 +259,23 @@ impl Exchange {
     #[inline(always)]
     pub(crate) fn ones<P: Protocol>(&self, kind: Kind) -> Data {
         let kind = if self.is_to_module::<P>(kind) { Kind::Request } else { kind };
-        self.sent.map_or([0; 8], |sent| sent.ones(kind))
+        self.sent().map_or([0; 8], |sent| sent.ones(kind))
     }
 
     /// Returns who answers in a mode, if the message has it.
     pub(crate) fn who(&self, mode: usize) -> Option<Who> {
-        self.answers.get(mode).copied().flatten()
+        self.answers().get(mode).copied().flatten()
     }
 
     /// Finds the way by which a frame with an identifier travels, if the message has it.
     #[inline(always)]
     pub(crate) fn way<P: Protocol>(&self, kind: Kind, id: u32) -> Option<Way> {
-        P::way(&Shown::new(id, self.is_to_module::<P>(kind), self.answers))
+        P::way(&Shown::new(id, self.is_to_module::<P>(kind), self.answers()))
     }
 
     /// Returns the addressing mode that an identifier shows.
     pub(crate) fn addressing<P: Protocol>(&self, kind: Kind, id: u32) -> Option<Addressing> {
-        Addressing::find(P::MODES, self.answers, self.is_to_module::<P>(kind), id)
+        Addressing::find(P::MODES, self.answers(), self.is_to_module::<P>(kind), id)
     }
 
     #[inline(always)]

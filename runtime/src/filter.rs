@@ -154,7 +154,7 @@ impl Filter {
 
     /// Writes into the selectors without a required value that the reply reports no error.
     #[must_use]
-    pub(crate) const fn accepting(mut self) -> Self {
+    pub const fn accepting(mut self) -> Self {
         let mut selectors = self.selectors;
         while let [selector, others @ ..] = selectors {
             if let (Some(normal), false) = (selector.normal, self.requires(selector.place)) {

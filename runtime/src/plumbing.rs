@@ -9,7 +9,7 @@ pub use defmt;
 pub use serde;
 
 pub use crate::address::{Address, Pattern, Who};
-pub use crate::exchange::Sent;
+pub use crate::exchange::{Particulars, Sent};
 pub use crate::filter::IdFilter;
 pub use crate::incoming::Incoming;
 pub use crate::layout::{AnySignals, Decode, Signals, Task};
@@ -31,8 +31,9 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern,
-        Piece, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
+        Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Particulars,
+        Pattern, Piece, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
+        right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

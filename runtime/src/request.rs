@@ -91,7 +91,7 @@ impl Exchange {
         model: Option<u8>,
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
-        let who = self.answers.get(target.mode()).copied().flatten();
+        let who = self.answers().get(target.mode()).copied().flatten();
         let (Some(who), Some(request)) = (who, self.filter(Kind::Request)) else {
             return Err(self.no_mode(T::Protocol::MODES.get(target.mode())));
         };
@@ -105,7 +105,7 @@ impl Exchange {
             (Some(filter), Some(who)) => filter.id_narrowed(who),
             _ => IdFilter::NONE,
         };
-        let (reply, refusal) = (shown(self.filter(Kind::Reply).as_ref()), shown(self.refusal));
+        let (reply, refusal) = (shown(self.filter(Kind::Reply).as_ref()), shown(self.refusal()));
         Ok(Request { frame, exchange: self, who, reply, refusal, carried: PhantomData })
     }
 }
@@ -169,7 +169,7 @@ impl<P, R> Request<P, R> {
     /// message's reply.
     #[inline]
     pub fn refusal(&self) -> Option<Filter> {
-        self.exchange.refusal.filter(|_| self.refusal != IdFilter::NONE).map(|refusal| refusal.narrowed(self.refusal))
+        self.exchange.refusal().filter(|_| self.refusal != IdFilter::NONE).map(|refusal| refusal.narrowed(self.refusal))
     }
 
     #[inline]
@@ -263,7 +263,7 @@ impl<P: Protocol, R> Request<P, R> {
             return None;
         }
         let frame = Frame::copied(id, P::FRAME.is_extended(), None, frame)?;
-        let refusal = || selectors_of::<P>(|| self.exchange.refusal.copied(), &frame).map(Answer::Refusal);
+        let refusal = || selectors_of::<P>(|| self.exchange.refusal().copied(), &frame).map(Answer::Refusal);
         let values = || selectors_of::<P>(|| self.exchange.filter(Kind::Reply), &frame).map(Answer::Values);
         let refused = is_refusal.then(refusal).flatten();
         let answer = refused.or_else(|| is_reply.then(values).flatten());

@@ -7,7 +7,7 @@ use std::string::ToString;
 
 use heaters::{FRAME, HEAT, Heat, Identifier, Message, To, decode, frame, mode_of};
 
-use crate::plumbing::{Decode, Sent};
+use crate::plumbing::{Decode, Particulars, Sent};
 use crate::{
     Access, AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number,
     Payload, Problem, Reading, Reason, Received, Replies, Request, Route, Signal, StatusBit,
@@ -269,12 +269,13 @@ fn a_sender_is_the_usual_one_or_else_the_first_one() {
 #[test]
 fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
     const PRIORITY: Bits = Bits::new(28, 26);
-    const ALL: Access = Access::new("set", &[None; 3]).request(FRAME).reply(FRAME).report(FRAME);
+    const ALL: Access = Access::new("set", &[None; 3]).request(&FRAME).reply(&FRAME).report(&FRAME);
     const SENT: Sent = Sent::NOTHING.id(PRIORITY, 4).request([0xFF; 8]).reply([0x0F; 8]).report([0xF0; 8]);
     const URGENT: Sent = Sent::NOTHING.id(PRIORITY, 4);
     let every = ALL.of("boost", FRAME);
-    let own = every.sending(&SENT);
-    let plain = |kind| every.sending(&URGENT).filter(kind).map(|filter| filter.frame(8).bytes());
+    let own = every.with(const { &Particulars::NOTHING.sending(&SENT) });
+    let urgent = every.with(const { &Particulars::NOTHING.sending(&URGENT) });
+    let plain = |kind| urgent.filter(kind).map(|filter| filter.frame(8).bytes());
     assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(plain), [Some([0; 8]); 3]);
     let blank = |kind| own.filter(kind).expect("all kinds are there").frame(2);
     assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).raw_id()), [0x1100_0000; 3]);
@@ -286,7 +287,8 @@ fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
 #[test]
 fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
     const SENT: Sent = Sent::NOTHING.request([1; 8]).reply([2; 8]).report([4; 8]);
-    static EVERY: Exchange = Access::new("set", &[None; 3]).of("heat", FRAME).length(4).sending(&SENT);
+    static EVERY: Exchange =
+        Access::new("set", &[None; 3]).of("heat", FRAME).length(4).with(&Particulars::NOTHING.sending(&SENT));
     let built = |exchange: &'static Exchange, kind| {
         let short = Frame::new_raw(0x0107_F003, true, [0x80, 0, 0, 0, 0, 0, 0, 0], 1);
         let received = Received::new(Message::Heat(Heat { power_w: 0.0 }), exchange, kind, short, None);
@@ -300,7 +302,8 @@ fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
 
 #[test]
 fn a_message_of_some_device_models_is_refused_for_the_others() {
-    const BOOST: Exchange = Access::new("set", &[None; 3]).of("boost", FRAME).length(4).models(&[1, 4]);
+    const BOOST: Exchange =
+        Access::new("set", &[None; 3]).of("boost", FRAME).length(4).with(&Particulars::NOTHING.models(&[1, 4]));
     let refused = Err(Error::Model { message: "boost" });
     assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
     assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));

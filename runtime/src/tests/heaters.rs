@@ -1,6 +1,6 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
+use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Particulars, Pattern, Shown, Task, Way, Who};
 use crate::{
     Access, AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields,
     Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -139,26 +139,29 @@ impl Heat {
         Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
     pub const SET: Exchange = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .with_values()
-        .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
-        .reply(FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
+        .request(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
+        .reply(&FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2).accepting())
         .of("heat", FRAME.id(COMMAND, 7))
         .length(4)
-        .refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1));
+        .with(&Particulars::NOTHING.refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1)));
     pub const READ: Exchange = Access::new("read", &[None, Some(Who::Coordinator), None])
-        .request(FRAME)
-        .reply(FRAME)
+        .request(&FRAME)
+        .reply(&FRAME)
         .of("heat", FRAME.id(COMMAND, 8))
         .length(4);
     pub const ASK: Exchange = Access::new("ask", &[Some(Who::One), Some(Who::Each), None])
-        .request(FRAME)
-        .reply(FRAME)
+        .request(&FRAME)
+        .reply(&FRAME)
         .of("heat", FRAME.id(COMMAND, 0x0C))
         .length(4);
     pub const REPORT: Exchange =
-        Access::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
-    pub const REPORT_1: Exchange = Self::REPORT.models(&[1]);
-    pub const REPORT_2: Exchange =
-        Access::new("report of model 2", &[None; 3]).report(FRAME).of("heat", FRAME).length(4).models(&[2]);
+        Access::new("report", &[None; 3]).report(&FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+    pub const REPORT_1: Exchange = Self::REPORT.with(&Particulars::NOTHING.models(&[1]));
+    pub const REPORT_2: Exchange = Access::new("report of model 2", &[None; 3])
+        .report(&FRAME)
+        .of("heat", FRAME)
+        .length(4)
+        .with(&Particulars::NOTHING.models(&[2]));
     pub const PROBE: Exchange = Access::new("probe", &[None; 3]).of("heat", FRAME).length(2);
 
     pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {

@@ -267,8 +267,8 @@ pub const ALL_MODE: Mode = Mode {
 /// Set. Section 2.
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Coordinator)])
     .with_values()
-    .request(FRAME)
-    .reply(FRAME);
+    .request(&FRAME)
+    .reply(&FRAME);
 
 /// Level of the output: `command` 0x03. Section 2.
 /// - [`set`](SET_ACCESS): the module answers (`single`), each module answers (`group`), one answers for

@@ -123,10 +123,10 @@ pub const TO_CHARGER_MODE: Mode = Mode {
 
 /// Charger cycle.
 pub const CHARGER_CYCLE_ACCESS: Access =
-    Access::new("charger_cycle", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+    Access::new("charger_cycle", &[Some(Who::One), None]).with_values().report(&FRAME).from_controller();
 
 /// Vehicle cycle.
-pub const VEHICLE_CYCLE_ACCESS: Access = Access::new("vehicle_cycle", &[None, Some(Who::One)]).report(FRAME);
+pub const VEHICLE_CYCLE_ACCESS: Access = Access::new("vehicle_cycle", &[None, Some(Who::One)]).report(&FRAME);
 
 /// Delivered: `number` 0x01. Section 3.1.
 /// - [`charger_cycle`](CHARGER_CYCLE_ACCESS): the controller sends it (`to_vehicle`). It comes every 50

@@ -65,7 +65,7 @@ pub const MOTOR_MODE: Mode = Mode {
 };
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Remark language. Section 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -117,7 +117,7 @@ pub const FAN_MODE: Mode = Mode {
 };
 
 /// Read. Section 1.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Speed: `command` 0x002. Section 2; C 4.
 /// - [`read`](READ_ACCESS): the module answers (`fan`).

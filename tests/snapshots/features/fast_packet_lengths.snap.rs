@@ -87,7 +87,7 @@ pub const EVERYBODY_MODE: Mode = Mode {
 };
 
 /// Report. Section 1.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// What a battery says of its charge: `format` 0xF2, `group` 0x12. Section 2.
 /// - [`report`](REPORT_ACCESS): the module sends it (`everybody`).

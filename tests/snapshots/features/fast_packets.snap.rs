@@ -87,7 +87,7 @@ pub const EVERYBODY_MODE: Mode = Mode {
 };
 
 /// Report. Section 1.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// What an engine does: `format` 0xF2, `group` 0x01. Section 2.
 /// - [`report`](REPORT_ACCESS): the module sends it (`everybody`).

@@ -158,14 +158,14 @@ pub const SINGLE_MODE: Mode = Mode {
 
 /// Scan. Section 3.
 pub const SCAN_ACCESS: Access =
-    Access::new("scan", &[Some(Who::One)]).request(FRAME).reply(FRAME.selectors(&[SIGNAL_SELECTOR]));
+    Access::new("scan", &[Some(Who::One)]).request(&FRAME).reply(&FRAME.selectors(&[SIGNAL_SELECTOR]));
 
 /// Scan in the set `all`. Section 3.
 ///
 /// In a reply, `command` is `0x4`.
 pub const SCAN_ALL_ACCESS: Access = Access::new("scan", &[Some(Who::One)])
     .member_of("all")
-    .reply(FRAME.selectors(&[SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x04));
+    .reply(&FRAME.selectors(&[SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x04));
 
 /// All that an oven measures: `command` 0x04. Section 3.
 /// - [`scan`](SCAN_ACCESS): the module answers (`single`).

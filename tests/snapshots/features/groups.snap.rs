@@ -61,7 +61,7 @@ pub const CYCLIC_MODE: Mode = Mode {
 };
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Conditions pack. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

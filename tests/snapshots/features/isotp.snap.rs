@@ -224,23 +224,28 @@ pub const UNIT_MODE: Mode = Mode {
 /// Read.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::Each), Some(Who::One)])
     .with_values()
-    .request(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR]).data(SERVICE_SELECTOR.place, 0x21))
-    .reply(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR]).data(SERVICE_SELECTOR.place, 0x61));
+    .request(&FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR]).data(SERVICE_SELECTOR.place, 0x21))
+    .reply(
+        &FRAME
+            .selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR, ITEM_SELECTOR])
+            .data(SERVICE_SELECTOR.place, 0x61)
+            .accepting(),
+    );
 
 /// Reset.
 pub const RESET_ACCESS: Access = Access::new("reset", &[Some(Who::Each), Some(Who::One)])
     .with_values()
-    .request(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x11))
-    .reply(FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x51));
+    .request(&FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x11))
+    .reply(&FRAME.selectors(&[SERVICE_SELECTOR, STATUS_SELECTOR]).data(SERVICE_SELECTOR.place, 0x51).accepting());
 
 /// Frames of the transport, sent by the module. Section 1.
 pub const TP_OF_MODULE_ACCESS: Access =
-    Access::new("tp_of_module", &[Some(Who::Each), Some(Who::One)]).report(FRAME.selectors(&[PCI_SELECTOR]));
+    Access::new("tp_of_module", &[Some(Who::Each), Some(Who::One)]).report(&FRAME.selectors(&[PCI_SELECTOR]));
 
 /// Frames of the transport, sent by the controller. Section 1.
 pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::Each), Some(Who::One)])
     .with_values()
-    .report(FRAME.selectors(&[PCI_SELECTOR]))
+    .report(&FRAME.selectors(&[PCI_SELECTOR]))
     .from_controller();
 
 /// How the message goes on. Section 1.
@@ -389,12 +394,12 @@ impl TpSingleFrame {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
         .length(2)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
         .length(2)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -486,11 +491,11 @@ impl TpFirstFrame {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -548,12 +553,12 @@ impl TpConsecutiveFrame {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
         .length(2)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
         .length(2)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -658,12 +663,12 @@ impl TpFlowControl {
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
         .length(3)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
         .length(3)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.

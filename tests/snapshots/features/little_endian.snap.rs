@@ -76,7 +76,7 @@ pub const CYCLIC_MODE: Mode = Mode {
 };
 
 /// Report. Section 3.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// What a rectifier measures: `function` 0x1. Section 3.
 /// - [`report`](REPORT_ACCESS): the module sends it (`cyclic`). It comes every 500 ms.

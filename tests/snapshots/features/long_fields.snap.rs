@@ -69,7 +69,7 @@ pub const BATTERY_MODE: Mode = Mode {
 };
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// State. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -72,7 +72,7 @@ pub const MOTOR_MODE: Mode = Mode {
 };
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Who made it: `command` 0x21. Section 2.
 /// - [`report`](REPORT_ACCESS): the module sends it (`motor`).

@@ -114,7 +114,7 @@ pub const PUMP_MODE: Mode = Mode {
 };
 
 /// Report.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -159,8 +159,10 @@ impl SupplyAc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange =
-        REPORT_ACCESS.of("supply_ac", FRAME.id(Identifier::COMMAND, 0x001)).length(2).models(&[Model::P10a as u8]);
+    pub const REPORT: Exchange = REPORT_ACCESS
+        .of("supply_ac", FRAME.id(Identifier::COMMAND, 0x001))
+        .length(2)
+        .with(&Particulars::NOTHING.models(&[Model::P10a as u8]));
 }
 
 impl Layout for SupplyAc {
@@ -187,8 +189,10 @@ impl SupplyDc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange =
-        REPORT_ACCESS.of("supply_dc", FRAME.id(Identifier::COMMAND, 0x001)).length(2).models(&[Model::P48vDc as u8]);
+    pub const REPORT: Exchange = REPORT_ACCESS
+        .of("supply_dc", FRAME.id(Identifier::COMMAND, 0x001))
+        .length(2)
+        .with(&Particulars::NOTHING.models(&[Model::P48vDc as u8]));
 }
 
 impl Layout for SupplyDc {

@@ -114,7 +114,7 @@ pub const PUMP_MODE: Mode = Mode {
 };
 
 /// Set.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -190,7 +190,7 @@ impl SetSpeed {
     pub const SET: Exchange = SET_ACCESS
         .of("set_speed", FRAME.id(Identifier::COMMAND, 0x002))
         .length(4)
-        .models(&[Model::P10a as u8, Model::P48vDc as u8]);
+        .with(&Particulars::NOTHING.models(&[Model::P10a as u8, Model::P48vDc as u8]));
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

@@ -139,7 +139,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Set. Section 2.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Power. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

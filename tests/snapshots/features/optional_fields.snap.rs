@@ -139,10 +139,10 @@ pub const CHARGER_MODE: Mode = Mode {
 };
 
 /// Set. Section 2.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// State of the charger: `command` 0x12. Section 2.
 /// - [`report`](REPORT_ACCESS): the module sends it (`charger`).

@@ -139,7 +139,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Label on the housing. Written as `{major}.{minor:2}-{letter}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

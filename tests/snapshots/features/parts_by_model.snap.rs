@@ -139,7 +139,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 1.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -225,7 +225,7 @@ impl LabelPart {
     pub const READ: Exchange = READ_ACCESS
         .of("label", FRAME.id(Identifier::COMMAND, 0x03))
         .length(4)
-        .models(&[Model::A as u8, Model::B as u8]);
+        .with(&Particulars::NOTHING.models(&[Model::A as u8, Model::B as u8]));
 }
 
 impl Layout for LabelPart {

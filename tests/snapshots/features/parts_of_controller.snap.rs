@@ -111,7 +111,7 @@ pub const ALL_MODE: Mode = Mode {
 };
 
 /// Tell. Section 1.
-pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Each)]).with_values().report(FRAME).from_controller();
+pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Each)]).with_values().report(&FRAME).from_controller();
 
 /// What all ovens show: `command` 0x0E. Section 2.
 /// - [`tell`](TELL_ACCESS): the controller sends it (`all`).

@@ -150,14 +150,14 @@ pub const SINGLE_MODE: Mode = Mode {
 
 /// Read.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
-    .request(FRAME.id(Identifier::SET, 0x0))
-    .reply(FRAME.id(Identifier::SET, 0x0));
+    .request(&FRAME.id(Identifier::SET, 0x0))
+    .reply(&FRAME.id(Identifier::SET, 0x0));
 
 /// Set.
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)])
     .with_values()
-    .request(FRAME.id(Identifier::SET, 0x1))
-    .reply(FRAME.id(Identifier::SET, 0x1));
+    .request(&FRAME.id(Identifier::SET, 0x1))
+    .reply(&FRAME.id(Identifier::SET, 0x1));
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

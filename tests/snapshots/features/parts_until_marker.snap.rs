@@ -154,7 +154,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 1.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// A label, six letters in each frame: `command` 0x02. Section 2.
 /// - [`read`](READ_ACCESS): the module answers (`single`).

@@ -65,7 +65,7 @@ pub const MOTOR_MODE: Mode = Mode {
 };
 
 /// Report. Section 2.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// How long each trip took: `command` 0x21. Section 3.
 /// - [`report`](REPORT_ACCESS): the module sends it (`motor`).

@@ -215,8 +215,8 @@ pub const SERVICE_MODE: Mode = Mode {
 /// Offer.
 pub const OFFER_ACCESS: Access = Access::new("offer", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody)])
     .with_values()
-    .request(FRAME)
-    .reply(FRAME);
+    .request(&FRAME)
+    .reply(&FRAME);
 
 /// Limits: `command` 0x0001. Section 2.
 /// - [`offer`](OFFER_ACCESS): the module answers (`peer`), nobody answers (`everybody`, `service`).

@@ -122,12 +122,12 @@ pub const DEVICE_MODE: Mode = Mode {
 /// Write. Section 2.
 pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
-    .request(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x03))
-    .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x04));
+    .request(&FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x03))
+    .reply(&FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x04));
 
 /// Refuse. Section 3.
 pub const REFUSE_ACCESS: Access = Access::new("refuse", &[Some(Who::One)])
-    .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x80));
+    .reply(&FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x80));
 
 /// Speed: `index` 0x07. Section 2.
 /// - [`write`](WRITE_ACCESS): the module answers (`device`).
@@ -143,11 +143,13 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("rpm").limits(300, 3000);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x07)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x07)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x07)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x07)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,

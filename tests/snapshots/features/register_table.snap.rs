@@ -150,32 +150,34 @@ pub const SINGLE_MODE: Mode = Mode {
 /// Read. Section 2.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
     .request(
-        FRAME
+        &FRAME
             .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
             .id(Identifier::COMMAND, 0x01)
             .data(FUNCTION_SELECTOR.place, 0x10),
     )
     .reply(
-        FRAME
+        &FRAME
             .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
             .id(Identifier::COMMAND, 0x01)
-            .data(FUNCTION_SELECTOR.place, 0x41),
+            .data(FUNCTION_SELECTOR.place, 0x41)
+            .accepting(),
     );
 
 /// Write. Section 2.
 pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
     .request(
-        FRAME
+        &FRAME
             .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
             .id(Identifier::COMMAND, 0x01)
             .data(FUNCTION_SELECTOR.place, 0x03),
     )
     .reply(
-        FRAME
+        &FRAME
             .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
             .id(Identifier::COMMAND, 0x01)
-            .data(FUNCTION_SELECTOR.place, 0x43),
+            .data(FUNCTION_SELECTOR.place, 0x43)
+            .accepting(),
     );
 
 /// Voltage limit: `register` 0x0021. Section 3.

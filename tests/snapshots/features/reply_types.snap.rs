@@ -123,15 +123,15 @@ pub const DEVICE_MODE: Mode = Mode {
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
-    .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
-    .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x41));
+    .request(&FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
+    .reply(&FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x41));
 
 /// Read. Section 2.
 ///
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
 pub const READ_ACCESS_2: Access = Access::new("read", &[Some(Who::One)])
-    .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
-    .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x42));
+    .request(&FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
+    .reply(&FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x42));
 
 /// Voltage: `register` 0x0001. Section 3.
 /// - [`read`](READ_ACCESS): the module answers (`device`).

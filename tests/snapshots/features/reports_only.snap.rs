@@ -61,7 +61,7 @@ pub const CYCLIC_MODE: Mode = Mode {
 };
 
 /// Report. Section 3.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Voltage of a battery. Section 3.
 /// - [`report`](REPORT_ACCESS): the module sends it (`cyclic`).

@@ -177,7 +177,7 @@ pub const VEHICLE_MODE: Mode = Mode {
 };
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Set the current: `command` 0x012. Section 2.
 /// - [`write`](WRITE_ACCESS): the module answers (`vehicle`).
@@ -194,11 +194,13 @@ impl SetCurrent {
     pub const CURRENT: Signal<u16, f64> =
         Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10).limits(0.0, 1000.0);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("set_current", FRAME.id(Identifier::COMMAND, 0x012)).length(4).sending(
-        &Sent::NOTHING
-            .id(Identifier::PRIORITY, 0x4)
-            .request([0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
-            .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_current", FRAME.id(Identifier::COMMAND, 0x012)).length(4).with(
+        &Particulars::NOTHING.sending(
+            &Sent::NOTHING
+                .id(Identifier::PRIORITY, 0x4)
+                .request([0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
+                .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+        ),
     );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
@@ -234,10 +236,12 @@ impl Stop {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(0));
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("stop", FRAME.id(Identifier::COMMAND, 0x013)).length(4).sending(
-        &Sent::NOTHING
-            .request([0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
-            .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("stop", FRAME.id(Identifier::COMMAND, 0x013)).length(4).with(
+        &Particulars::NOTHING.sending(
+            &Sent::NOTHING
+                .request([0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])
+                .reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]),
+        ),
     );
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,

@@ -114,7 +114,7 @@ pub const BATTERY_MODE: Mode = Mode {
 };
 
 /// Set.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -114,7 +114,7 @@ pub const RECTIFIER_MODE: Mode = Mode {
 };
 
 /// Set.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -143,9 +143,9 @@ pub const SDO_MODE: Mode = Mode {
 
 /// Read. Section 2.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
-    .request(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x40))
+    .request(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x40))
     .reply(
-        FRAME
+        &FRAME
             .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
             .data(COMMAND_SELECTOR.place, 0x43)
             .open(COMMAND_SELECTOR.place, 0x0C),
@@ -154,12 +154,12 @@ pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)])
 /// Write. Section 2.
 pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)])
     .with_values()
-    .request(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x23))
-    .reply(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x60));
+    .request(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x23))
+    .reply(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x60));
 
 /// Abort. Section 2.
 pub const ABORT_ACCESS: Access = Access::new("abort", &[Some(Who::One)])
-    .reply(FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x80));
+    .reply(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x80));
 
 /// Aborted value. Section 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -231,18 +231,22 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4)).unit("rpm").limits(0, 6000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).refusal(
-        &FRAME
-            .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2001)
-            .data(COMMAND_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2001)
+                .data(COMMAND_SELECTOR.place, 0x80),
+        ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).refusal(
-        &FRAME
-            .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2001)
-            .data(COMMAND_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2001)
+                .data(COMMAND_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.

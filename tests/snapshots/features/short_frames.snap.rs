@@ -160,12 +160,12 @@ pub const SINGLE_MODE: Mode = Mode {
 /// Tell. Section 4.
 pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Nobody), None])
     .with_values()
-    .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
+    .request(&FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
 /// Ask. Section 5.
 pub const ASK_ACCESS: Access = Access::new("ask", &[None, Some(Who::One)])
-    .request(FRAME.id(Identifier::FUNCTION, 0x6))
-    .reply(FRAME.id(Identifier::FUNCTION, 0x5));
+    .request(&FRAME.id(Identifier::FUNCTION, 0x6))
+    .reply(&FRAME.id(Identifier::FUNCTION, 0x5));
 
 /// Keeps the outputs on: `sign` 0x55. Section 4.
 /// - [`tell`](TELL_ACCESS): nobody answers (`all`).

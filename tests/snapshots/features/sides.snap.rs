@@ -114,10 +114,10 @@ pub const BUS_MODE: Mode = Mode {
 };
 
 /// Read.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Tell.
-pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::One)]).with_values().report(FRAME).from_controller();
+pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::One)]).with_values().report(&FRAME).from_controller();
 
 /// State: `number` 0x001. Section 2.
 /// - [`read`](READ_ACCESS): the battery answers (`bus`).

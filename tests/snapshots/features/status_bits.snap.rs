@@ -139,7 +139,7 @@ pub const BATTERY_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Failures failure. Section 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

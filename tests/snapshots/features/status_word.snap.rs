@@ -139,7 +139,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// State of a heater. Section 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -139,7 +139,7 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Read. Section 2.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Version of the firmware: `command` 0x05. Section 2.
 /// - [`read`](READ_ACCESS): the module answers (`single`).

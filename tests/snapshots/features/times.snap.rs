@@ -153,10 +153,10 @@ pub const TIMING: Timing = Timing::NONE
     ]);
 
 /// Read. Section 2.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Tell. Section 2.
-pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Nobody)]).request(FRAME);
+pub const TELL_ACCESS: Access = Access::new("tell", &[Some(Who::Nobody)]).request(&FRAME);
 
 /// Temperature: `command` 0x01. Section 3.
 /// - [`read`](READ_ACCESS): the module answers (`single`).

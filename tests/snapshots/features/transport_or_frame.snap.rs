@@ -164,24 +164,24 @@ pub const EVERYBODY_MODE: Mode = Mode {
 };
 
 /// Of vehicle. Section 1.
-pub const OF_VEHICLE_ACCESS: Access = Access::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const OF_VEHICLE_ACCESS: Access = Access::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(&FRAME);
 
 /// Frames of the transport, sent by the module. Section 2.
 pub const TP_OF_MODULE_ACCESS: Access =
-    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
+    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(&FRAME.selectors(&[CONTROL_SELECTOR]));
 
 /// Frames of the transport, sent by the module. Section 2.
-pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(&FRAME);
 
 /// Frames of the transport, sent by the controller. Section 2.
 pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
     .with_values()
-    .report(FRAME.selectors(&[CONTROL_SELECTOR]))
+    .report(&FRAME.selectors(&[CONTROL_SELECTOR]))
     .from_controller();
 
 /// Frames of the transport, sent by the controller. Section 2.
 pub const TP_OF_CONTROLLER_ACCESS_2: Access =
-    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
+    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(&FRAME).from_controller();
 
 /// Cell voltages, one frame if there are few: `format` 0x15. Section 3.
 /// - [`of_vehicle`](OF_VEHICLE_ACCESS): the vehicle sends it (`peer`, `everybody`).
@@ -343,11 +343,11 @@ impl TpRequestToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -402,13 +402,15 @@ impl TpClearToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -456,13 +458,15 @@ impl TpEndOfMessage {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -510,13 +514,15 @@ impl TpBroadcast {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -560,13 +566,15 @@ impl TpAbort {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -608,11 +616,11 @@ impl TpData {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.

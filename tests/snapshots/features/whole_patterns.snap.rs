@@ -110,15 +110,15 @@ pub const ALL_MODE: Mode = Mode {
 };
 
 /// Demand.
-pub const DEMAND_ACCESS: Access = Access::new("demand", &[Some(Who::Nobody)]).with_values().request(FRAME);
+pub const DEMAND_ACCESS: Access = Access::new("demand", &[Some(Who::Nobody)]).with_values().request(&FRAME);
 
 /// Supply.
-pub const SUPPLY_ACCESS: Access = Access::new("supply", &[Some(Who::One)]).report(FRAME);
+pub const SUPPLY_ACCESS: Access = Access::new("supply", &[Some(Who::One)]).report(&FRAME);
 
 /// Query.
 pub const QUERY_ACCESS: Access = Access::new("query", &[Some(Who::One)])
-    .request(FRAME.selectors(&[FUNCTION_SELECTOR]).id(Identifier::ID, 0x600).data(FUNCTION_SELECTOR.place, 0x03))
-    .reply(FRAME.selectors(&[FUNCTION_SELECTOR]).id(Identifier::ID, 0x600).data(FUNCTION_SELECTOR.place, 0x43));
+    .request(&FRAME.selectors(&[FUNCTION_SELECTOR]).id(Identifier::ID, 0x600).data(FUNCTION_SELECTOR.place, 0x03))
+    .reply(&FRAME.selectors(&[FUNCTION_SELECTOR]).id(Identifier::ID, 0x600).data(FUNCTION_SELECTOR.place, 0x43));
 
 /// Wanted: `id` 0x305. Section 2.
 /// - [`demand`](DEMAND_ACCESS): nobody answers (`all`).

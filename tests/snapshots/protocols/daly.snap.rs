@@ -224,7 +224,7 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 ///
 /// Erratum Y6: printed is "eight reserved bytes in a request, without a value", used is "0, and a note
 /// on anything else", because a layout table after the document and descriptions by users have 0.
-pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Whether the battery is charging or discharging. Section 5.4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

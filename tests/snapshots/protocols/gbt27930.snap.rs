@@ -245,49 +245,49 @@ pub const TIMING: Timing = Timing::NONE.with_messages(&[
 ///
 /// A message whose fields are all optional may be left out.
 pub const CHARGER_CYCLE_ACCESS: Access =
-    Access::new("charger_cycle", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+    Access::new("charger_cycle", &[Some(Who::One), None]).with_values().report(&FRAME).from_controller();
 
 /// What the BMS sends in cycles. Section 3.5, 4, 8.1.
 ///
 /// A message whose fields are all optional may be left out.
-pub const BMS_CYCLE_ACCESS: Access = Access::new("bms_cycle", &[Some(Who::One), None]).report(FRAME);
+pub const BMS_CYCLE_ACCESS: Access = Access::new("bms_cycle", &[Some(Who::One), None]).report(&FRAME);
 
 /// What the charger sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
 pub const CHARGER_EVENT_ACCESS: Access =
-    Access::new("charger_event", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
+    Access::new("charger_event", &[Some(Who::One), None]).with_values().report(&FRAME).from_controller();
 
 /// What the charger sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
 pub const CHARGER_EVENT_ACCESS_2: Access =
-    Access::new("charger_event", &[Some(Who::One), None]).report(FRAME).from_controller();
+    Access::new("charger_event", &[Some(Who::One), None]).report(&FRAME).from_controller();
 
 /// What the BMS sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
 /// side", because the examples have RQST of both sides, DM4 of the BMS and DM5 of the charger.
-pub const BMS_EVENT_ACCESS: Access = Access::new("bms_event", &[Some(Who::One), None]).report(FRAME);
+pub const BMS_EVENT_ACCESS: Access = Access::new("bms_event", &[Some(Who::One), None]).report(&FRAME);
 
 /// Frames of the transport, sent by the module. Section 7.
 pub const TP_OF_MODULE_ACCESS: Access =
-    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME.selectors(&[CONTROL_SELECTOR]));
+    Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(&FRAME.selectors(&[CONTROL_SELECTOR]));
 
 /// Frames of the transport, sent by the module. Section 7.
-pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const TP_OF_MODULE_ACCESS_2: Access = Access::new("tp_of_module", &[Some(Who::One), Some(Who::One)]).report(&FRAME);
 
 /// Frames of the transport, sent by the controller. Section 7.
 pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)])
     .with_values()
-    .report(FRAME.selectors(&[CONTROL_SELECTOR]))
+    .report(&FRAME.selectors(&[CONTROL_SELECTOR]))
     .from_controller();
 
 /// Frames of the transport, sent by the controller. Section 7.
 pub const TP_OF_CONTROLLER_ACCESS_2: Access =
-    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(FRAME).from_controller();
+    Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(&FRAME).from_controller();
 
 /// Whether the charger has recognised the BMS. Section 5.3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -2071,7 +2071,7 @@ impl Brm {
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("brm", FRAME.id(Identifier::FORMAT, 0x02))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Brm {
@@ -2243,7 +2243,7 @@ impl Bcp {
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bcp", FRAME.id(Identifier::FORMAT, 0x06))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Bcp {
@@ -2475,7 +2475,7 @@ impl Bro {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bro", FRAME.id(Identifier::FORMAT, 0x09))
         .length(1)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4)));
 }
 
 impl Layout for Bro {
@@ -2508,7 +2508,7 @@ impl Cro {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
         .of("cro", FRAME.id(Identifier::FORMAT, 0x0A))
         .length(1)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4)));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2676,7 +2676,7 @@ impl Bcs {
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bcs", FRAME.id(Identifier::FORMAT, 0x11))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Bcs {
@@ -2770,7 +2770,7 @@ impl Ccs {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
         .of("ccs", FRAME.id(Identifier::FORMAT, 0x12))
         .length(7)
-        .sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00])));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2928,7 +2928,7 @@ impl Bsm {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bsm", FRAME.id(Identifier::FORMAT, 0x13))
         .length(7)
-        .sending(&Sent::NOTHING.report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00]));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00])));
 }
 
 impl Layout for Bsm {
@@ -3016,7 +3016,7 @@ impl Bmv {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bmv", FRAME.id(Identifier::FORMAT, 0x15))
         .length(2)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Bmv {
@@ -3179,7 +3179,7 @@ impl Bmt {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bmt", FRAME.id(Identifier::FORMAT, 0x16))
         .length(1)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Bmt {
@@ -3357,7 +3357,7 @@ impl Bsp {
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
         .of("bsp", FRAME.id(Identifier::FORMAT, 0x17))
         .length(1)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
 impl LongLayout for Bsp {
@@ -3581,10 +3581,10 @@ impl Bst {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bst", FRAME.id(Identifier::FORMAT, 0x19))
-        .length(4)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4).report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]));
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bst", FRAME.id(Identifier::FORMAT, 0x19)).length(4).with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]),
+        ));
 }
 
 impl Layout for Bst {
@@ -3740,10 +3740,12 @@ impl Cst {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange =
-        CHARGER_CYCLE_ACCESS.of("cst", FRAME.id(Identifier::FORMAT, 0x1A)).length(4).sending(
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
+        .of("cst", FRAME.id(Identifier::FORMAT, 0x1A))
+        .length(4)
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4025,10 +4027,10 @@ impl Bem {
     /// The signal `csd`, to read or write it alone, or to ask for its limits.
     pub const CSD: Signal<TimeoutState> = Signal::new("csd", Place::byte(3).bits(1, 0));
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bem", FRAME.id(Identifier::FORMAT, 0x1E))
-        .length(4)
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x2).report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]));
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bem", FRAME.id(Identifier::FORMAT, 0x1E)).length(4).with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
+        ));
 }
 
 impl Layout for Bem {
@@ -4120,10 +4122,12 @@ impl Cem {
     /// The signal `bsd`, to read or write it alone, or to ask for its limits.
     pub const BSD: Signal<TimeoutState> = Signal::new("bsd", Place::byte(3).bits(1, 0));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange =
-        CHARGER_CYCLE_ACCESS.of("cem", FRAME.id(Identifier::FORMAT, 0x1F)).length(4).sending(
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
+        .of("cem", FRAME.id(Identifier::FORMAT, 0x1F))
+        .length(4)
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4893,11 +4897,11 @@ impl Ackm {
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
-        .sending(&Sent::NOTHING.request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00])));
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
-        .sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00])));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4952,11 +4956,11 @@ impl TpRequestToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5012,13 +5016,15 @@ impl TpClearToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5066,13 +5072,15 @@ impl TpEndOfMessage {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5124,13 +5132,15 @@ impl TpBroadcast {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5175,13 +5185,15 @@ impl TpAbort {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]));
+        .with(&Particulars::NOTHING.sending(
+            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+        ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .sending(
+        .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        );
+        ));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5223,11 +5235,11 @@ impl TpData {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
         .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
-        .sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7));
+        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.

@@ -405,13 +405,13 @@ pub const TIMING: Timing = Timing::NONE
 
 /// Read from modules. Section 3.3, 3.5.
 pub const READ_ACCESS: Access =
-    Access::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None]).request(FRAME).reply(FRAME);
+    Access::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None]).request(&FRAME).reply(&FRAME);
 
 /// Read from the system or a group. Section 3.3, 3.5.
 pub const READ_TOTAL_ACCESS: Access =
     Access::new("read_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
-        .request(FRAME)
-        .reply(FRAME);
+        .request(&FRAME)
+        .reply(&FRAME);
 
 /// Set in modules. Section 3.3, 3.5.
 ///
@@ -424,8 +424,8 @@ pub const READ_TOTAL_ACCESS: Access =
 pub const SET_ACCESS: Access =
     Access::new("set", &[Some(Who::One), Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .with_values()
-        .request(FRAME)
-        .reply(FRAME);
+        .request(&FRAME)
+        .reply(&FRAME);
 
 /// Set for the system or a group. Section 3.3, 3.5.
 ///
@@ -433,8 +433,8 @@ pub const SET_ACCESS: Access =
 pub const SET_TOTAL_ACCESS: Access =
     Access::new("set_total", &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)])
         .with_values()
-        .request(FRAME)
-        .reply(FRAME);
+        .request(&FRAME)
+        .reply(&FRAME);
 
 /// Set in modules without a reply. Section 3.3.
 ///
@@ -445,7 +445,7 @@ pub const SET_TOTAL_ACCESS: Access =
 pub const SET_UNANSWERED_ACCESS: Access =
     Access::new("set_unanswered", &[Some(Who::Nobody), None, Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
-        .request(FRAME.selectors(&[SUB_COMMAND_SELECTOR]));
+        .request(&FRAME.selectors(&[SUB_COMMAND_SELECTOR]));
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -1279,11 +1279,12 @@ impl InputVoltage {
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06)).models(&[
-        Model::PsM2_3ac1000dc30kw as u8,
-        Model::Ps3ac500dc20kw as u8,
-        Model::PsM2_3ac500dc20kw as u8,
-    ]);
+    pub const READ: Exchange =
+        READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06)).with(&Particulars::NOTHING.models(&[
+            Model::PsM2_3ac1000dc30kw as u8,
+            Model::Ps3ac500dc20kw as u8,
+            Model::PsM2_3ac500dc20kw as u8,
+        ]));
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1346,7 +1347,7 @@ impl InputVoltageDc {
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
         .of("input_voltage_dc", FRAME.id(Identifier::COMMAND, 0x06))
-        .models(&[Model::PsM2_825dc1000dc30kw as u8]);
+        .with(&Particulars::NOTHING.models(&[Model::PsM2_825dc1000dc30kw as u8]));
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1444,7 +1445,11 @@ impl LimitInputCurrent {
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
         .of("limit_input_current", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1205))
-        .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
+        .with(&Particulars::NOTHING.models(&[
+            Model::PsM2_3ac1000dc30kw as u8,
+            Model::Ps3ac500dc20kw as u8,
+            Model::PsM2_3ac500dc20kw as u8,
+        ]));
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1523,8 +1528,11 @@ impl SetOperatingMode {
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
         .of("set_operating_mode", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1111))
-        .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
-        .models(&[Model::PsM2_825dc1000dc30kw as u8]);
+        .with(
+            &Particulars::NOTHING
+                .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
+                .models(&[Model::PsM2_825dc1000dc30kw as u8]),
+        );
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

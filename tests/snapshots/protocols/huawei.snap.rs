@@ -357,8 +357,8 @@ pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_0
 
 /// Read several registers. Section 4, 5.
 pub const READ_ALL_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
-    .request(FRAME)
-    .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]));
+    .request(&FRAME)
+    .reply(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).accepting());
 
 /// Read several registers in the set `measured_data`. Section 4, 5.
 ///
@@ -366,7 +366,7 @@ pub const READ_ALL_ACCESS: Access = Access::new("read_all", &[Some(Who::One), No
 pub const READ_ALL_MEASURED_DATA_ACCESS: Access =
     Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
         .member_of("measured_data")
-        .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x40));
+        .reply(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x40).accepting());
 
 /// Read several registers in the set `information`. Section 4, 5.
 ///
@@ -374,20 +374,20 @@ pub const READ_ALL_MEASURED_DATA_ACCESS: Access =
 pub const READ_ALL_INFORMATION_ACCESS: Access =
     Access::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
         .member_of("information")
-        .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x50));
+        .reply(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x50).accepting());
 
 /// Read the E-label. Section 6.
 pub const READ_TEXT_ACCESS: Access = Access::new("read_text", &[Some(Who::One), None, None, None, None, None, None])
-    .request(FRAME.id(Identifier::COMMAND, 0xD2))
-    .reply(FRAME.id(Identifier::COMMAND, 0xD2));
+    .request(&FRAME.id(Identifier::COMMAND, 0xD2))
+    .reply(&FRAME.id(Identifier::COMMAND, 0xD2));
 
 /// Set a register. Section 7.
 ///
 /// The reply repeats the request.
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), None, None, None, None, None, None])
     .with_values()
-    .request(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80))
-    .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80));
+    .request(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80))
+    .reply(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x80).accepting());
 
 /// Get a register. Section 8.
 ///
@@ -399,17 +399,17 @@ pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), None, None, 
 /// Erratum Z13: printed is "to PSU above 1081827E", used is "a frame from the PSU", because bit 7 is 0,
 /// which is from the PSU (2.1).
 pub const GET_ACCESS: Access = Access::new("get", &[Some(Who::One), None, None, None, None, None, None])
-    .request(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82))
-    .reply(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82));
+    .request(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82))
+    .reply(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x82).accepting());
 
 /// What PSUs send all the time. Section 9.1.
 ///
 /// Perhaps for agreeing on addresses and for sharing the load.
 pub const ANNOUNCE_ACCESS: Access = Access::new("announce", &[None, None, None, None, None, None, None])
-    .report(FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x11));
+    .report(&FRAME.selectors(&[STATUS_SELECTOR, REGISTER_SELECTOR]).id(Identifier::COMMAND, 0x11).accepting());
 
 /// What is sent at power-up. Section 9.3.
-pub const START_UP_ACCESS: Access = Access::new("start_up", &[None, None, None, None, None, None, None]).report(FRAME);
+pub const START_UP_ACCESS: Access = Access::new("start_up", &[None, None, None, None, None, None, None]).report(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -1242,15 +1242,9 @@ pub struct MeasuredData {
 
 impl MeasuredData {
     /// The access `read_all`, for filters and blank frames of it.
-    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("measured_data", FRAME.id(Identifier::COMMAND, 0x40)).answers(&[
-        Some(Who::One),
-        Some(Who::Each),
-        None,
-        None,
-        None,
-        None,
-        None,
-    ]);
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS
+        .of("measured_data", FRAME.id(Identifier::COMMAND, 0x40))
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS). Refuses other addressing modes and undocumented
     /// addresses.
@@ -1345,7 +1339,7 @@ impl OperatingHours {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("operating_hours", FRAME.data(REGISTER_SELECTOR.place, 0x10E))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1387,7 +1381,7 @@ impl InputPower {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x170))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1426,7 +1420,7 @@ impl InputFrequency {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("input_frequency", FRAME.data(REGISTER_SELECTOR.place, 0x171))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1465,7 +1459,7 @@ impl InputCurrent {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("input_current", FRAME.data(REGISTER_SELECTOR.place, 0x172))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1504,7 +1498,7 @@ impl OutputPower {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("output_power", FRAME.data(REGISTER_SELECTOR.place, 0x173))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1543,7 +1537,7 @@ impl Efficiency {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("efficiency", FRAME.data(REGISTER_SELECTOR.place, 0x174))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1583,7 +1577,7 @@ impl OutputVoltage {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x175))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1655,7 +1649,7 @@ impl MaximumOutputCurrent {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("maximum_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x176))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1710,7 +1704,7 @@ impl InputVoltage {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x178))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1749,7 +1743,7 @@ impl OutputTemperature {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("output_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x17F))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1793,7 +1787,7 @@ impl InputTemperature {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("input_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x180))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1836,7 +1830,7 @@ impl OutputCurrent1 {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("output_current_1", FRAME.data(REGISTER_SELECTOR.place, 0x181))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1879,7 +1873,7 @@ impl OutputCurrent2 {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("output_current_2", FRAME.data(REGISTER_SELECTOR.place, 0x182))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1925,7 +1919,7 @@ impl Alarms {
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
         .of("alarms", FRAME.data(REGISTER_SELECTOR.place, 0x183))
-        .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2975,7 +2969,7 @@ impl ReadyState {
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("ready_state", FRAME.data(REGISTER_SELECTOR.place, 0x001))
-        .answers(&[None, None, Some(Who::One), None, None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[None, None, Some(Who::One), None, None, None, None]));
 }
 
 impl Layout for ReadyState {
@@ -3009,7 +3003,7 @@ impl CommonLoad {
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("common_load", FRAME.data(REGISTER_SELECTOR.place, 0x002))
-        .answers(&[None, None, None, Some(Who::One), None, None, None]);
+        .with(&Particulars::NOTHING.answers(&[None, None, None, Some(Who::One), None, None, None]));
 }
 
 impl Layout for CommonLoad {
@@ -3049,7 +3043,7 @@ impl ActiveState {
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
         .of("active_state", FRAME.data(REGISTER_SELECTOR.place, 0x003))
-        .answers(&[None, None, None, None, Some(Who::One), None, None]);
+        .with(&Particulars::NOTHING.answers(&[None, None, None, None, Some(Who::One), None, None]));
 }
 
 impl Layout for ActiveState {
@@ -3086,15 +3080,9 @@ impl StartUp10 {
     /// The signal `content`, to read or write it alone, or to ask for its limits.
     pub const CONTENT: Signal<Bytes<6>> = Signal::new("content", Place::bytes(2, 7));
     /// The access `start_up`, for filters and blank frames of it.
-    pub const START_UP: Exchange = START_UP_ACCESS.of("start_up_10", FRAME.id(Identifier::COMMAND, 0x10)).answers(&[
-        None,
-        None,
-        Some(Who::One),
-        None,
-        None,
-        Some(Who::One),
-        None,
-    ]);
+    pub const START_UP: Exchange = START_UP_ACCESS
+        .of("start_up_10", FRAME.id(Identifier::COMMAND, 0x10))
+        .with(&Particulars::NOTHING.answers(&[None, None, Some(Who::One), None, None, Some(Who::One), None]));
 }
 
 impl Layout for StartUp10 {
@@ -3126,15 +3114,9 @@ impl StartUp81 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<8>> = Signal::new("value", Place::bytes(0, 7));
     /// The access `start_up`, for filters and blank frames of it.
-    pub const START_UP: Exchange = START_UP_ACCESS.of("start_up_81", FRAME.id(Identifier::COMMAND, 0x81)).answers(&[
-        None,
-        None,
-        None,
-        None,
-        None,
-        None,
-        Some(Who::One),
-    ]);
+    pub const START_UP: Exchange = START_UP_ACCESS
+        .of("start_up_81", FRAME.id(Identifier::COMMAND, 0x81))
+        .with(&Particulars::NOTHING.answers(&[None, None, None, None, None, None, Some(Who::One)]));
 }
 
 impl Layout for StartUp81 {

@@ -360,21 +360,21 @@ pub const TIMING: Timing = Timing::NONE
 
 /// Read from modules. Section 2.4.
 pub const READ_ACCESS: Access =
-    Access::new("read", &[Some(Who::One), Some(Who::Each), None, None]).request(FRAME).reply(FRAME);
+    Access::new("read", &[Some(Who::One), Some(Who::Each), None, None]).request(&FRAME).reply(&FRAME);
 
 /// Read from the system or a group. Section 2.4.
 pub const READ_TOTAL_ACCESS: Access =
     Access::new("read_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
-        .request(FRAME)
-        .reply(FRAME);
+        .request(&FRAME)
+        .reply(&FRAME);
 
 /// Set in modules. Section 2.4.
 ///
 /// The reply carries the values now in effect.
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody), None])
     .with_values()
-    .request(FRAME)
-    .reply(FRAME);
+    .request(&FRAME)
+    .reply(&FRAME);
 
 /// Set for the system or a group. Section 2.4.
 ///
@@ -386,8 +386,8 @@ pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Ea
 pub const SET_TOTAL_ACCESS: Access =
     Access::new("set_total", &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)])
         .with_values()
-        .request(FRAME)
-        .reply(FRAME);
+        .request(&FRAME)
+        .reply(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -1804,12 +1804,9 @@ impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A)).answers(&[
-        Some(Who::One),
-        Some(Who::Each),
-        Some(Who::Nobody),
-        Some(Who::Nobody),
-    ]);
+    pub const SET: Exchange = SET_ACCESS
+        .of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A))
+        .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), Some(Who::Nobody), Some(Who::Nobody)]));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

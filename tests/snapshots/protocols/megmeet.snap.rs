@@ -243,16 +243,16 @@ pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_0
 
 /// Read from one module. Section 2.1, 4.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None])
-    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82))
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82));
+    .request(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82))
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82).accepting());
 
 /// Set in modules. Section 2.1, 3.1, 3.2, 4.
 ///
 /// The control command; a module that is addressed alone replies with the value.
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::Nobody)])
     .with_values()
-    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80))
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80));
+    .request(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80))
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80).accepting());
 
 /// Set in modules and keep in their EEPROM. Section 2.1, 2.2.2, 4.
 ///
@@ -265,8 +265,8 @@ pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One), Some(Who::No
 /// go together, and nothing forbids 0x80; whether it stores too is not said.
 pub const STORE_ACCESS: Access = Access::new("store", &[Some(Who::One), Some(Who::Nobody)])
     .with_values()
-    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81))
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81));
+    .request(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81))
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81).accepting());
 
 /// Read several signals from one module in the set `inherent_information`. Section 2.1, 3.3, 3.4.
 ///
@@ -277,8 +277,8 @@ pub const STORE_ACCESS: Access = Access::new("store", &[Some(Who::One), Some(Who
 /// In a request, `command` is `0x50`. In a reply, `command` is `0x50`.
 pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None])
     .member_of("inherent_information")
-    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50))
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50));
+    .request(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50))
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50).accepting());
 
 /// Read several signals from one module in the set `real_time_data`. Section 2.1, 3.3, 3.4.
 ///
@@ -289,15 +289,15 @@ pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Access = Access::new("read_all",
 /// In a reply, `command` is `0x40`.
 pub const READ_ALL_REAL_TIME_DATA_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None])
     .member_of("real_time_data")
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x40));
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x40).accepting());
 
 /// Read several signals from one module. Section 2.1, 3.3, 3.4.
 ///
 /// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
-pub const READ_ALL_ACCESS: Access =
-    Access::new("read_all", &[Some(Who::One), None]).reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
+pub const READ_ALL_ACCESS: Access = Access::new("read_all", &[Some(Who::One), None])
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).accepting());
 
 /// Read several signals from one module. Section 2.1, 3.3, 3.4.
 ///
@@ -305,8 +305,8 @@ pub const READ_ALL_ACCESS: Access =
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
 pub const READ_ALL_ACCESS_2: Access = Access::new("read_all", &[Some(Who::One), None])
-    .request(FRAME)
-    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
+    .request(&FRAME)
+    .reply(&FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).accepting());
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -3332,14 +3332,17 @@ impl AddressModeSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::byte(3));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange =
-        READ_ACCESS.of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D)).models(&[Model::V48 as u8]);
+    pub const READ: Exchange = READ_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange =
-        SET_ACCESS.of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D)).models(&[Model::V48 as u8]);
+    pub const SET: Exchange = SET_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange =
-        STORE_ACCESS.of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D)).models(&[Model::V48 as u8]);
+    pub const STORE: Exchange = STORE_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

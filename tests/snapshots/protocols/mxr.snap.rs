@@ -397,10 +397,13 @@ pub const BROADCAST_MODE: Mode = Mode {
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None, None])
     .request(
-        FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
+        &FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
     )
     .reply(
-        FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x41),
+        &FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x41)
+            .accepting(),
     );
 
 /// Read from one module. Section 2.3.2.
@@ -408,10 +411,13 @@ pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None
 /// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
 pub const READ_ACCESS_2: Access = Access::new("read", &[Some(Who::One), None, None, None])
     .request(
-        FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
+        &FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10),
     )
     .reply(
-        FRAME.selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x42),
+        &FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x42)
+            .accepting(),
     );
 
 /// Set in modules. Section 2.3.1, 4, 6.
@@ -423,14 +429,15 @@ pub const SET_ACCESS: Access =
     Access::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
         .request(
-            FRAME
+            &FRAME
                 .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
                 .data(FUNCTION_SELECTOR.place, 0x03),
         )
         .reply(
-            FRAME
+            &FRAME
                 .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(FUNCTION_SELECTOR.place, 0x42),
+                .data(FUNCTION_SELECTOR.place, 0x42)
+                .accepting(),
         );
 
 /// Set in modules. Section 2.3.1, 4, 6.
@@ -442,14 +449,15 @@ pub const SET_ACCESS_2: Access =
     Access::new("set", &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .with_values()
         .request(
-            FRAME
+            &FRAME
                 .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
                 .data(FUNCTION_SELECTOR.place, 0x03),
         )
         .reply(
-            FRAME
+            &FRAME
                 .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(FUNCTION_SELECTOR.place, 0x41),
+                .data(FUNCTION_SELECTOR.place, 0x41)
+                .accepting(),
         );
 
 /// What a request wants, and of which type the value of a reply is. Section 2.3.

@@ -224,13 +224,13 @@ pub const TIMING: Timing =
 /// Read. Section 5.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None, None, None])
     .request(
-        FRAME
+        &FRAME
             .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
             .id(Identifier::FUNCTION, 0x6)
             .data(OPERATION_SELECTOR.place, 0x40),
     )
     .reply(
-        FRAME
+        &FRAME
             .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
             .id(Identifier::FUNCTION, 0x5)
             .data(OPERATION_SELECTOR.place, 0x4B),
@@ -242,13 +242,13 @@ pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One), None, None
 pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One), Some(Who::Nobody), None, None, None])
     .with_values()
     .request(
-        FRAME
+        &FRAME
             .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
             .id(Identifier::FUNCTION, 0x6)
             .data(OPERATION_SELECTOR.place, 0x22),
     )
     .reply(
-        FRAME
+        &FRAME
             .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
             .id(Identifier::FUNCTION, 0x5)
             .data(OPERATION_SELECTOR.place, 0x60),
@@ -256,7 +256,7 @@ pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One), Some(Who
 
 /// Refuse what was requested. Section 5.
 pub const REFUSE_ACCESS: Access = Access::new("refuse", &[Some(Who::One), None, None, None, None]).reply(
-    FRAME
+    &FRAME
         .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
         .id(Identifier::FUNCTION, 0x5)
         .data(OPERATION_SELECTOR.place, 0x80),
@@ -265,15 +265,15 @@ pub const REFUSE_ACCESS: Access = Access::new("refuse", &[Some(Who::One), None, 
 /// Tell all rectifiers. Section 2.
 pub const TELL_ACCESS: Access = Access::new("tell", &[None, None, Some(Who::Nobody), None, None])
     .with_values()
-    .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
+    .request(&FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
 /// Report at a fixed interval. Section 2.
 pub const REPORT_A_ACCESS: Access =
-    Access::new("report_a", &[None, None, None, Some(Who::One), None]).report(FRAME.id(Identifier::FUNCTION, 0x1));
+    Access::new("report_a", &[None, None, None, Some(Who::One), None]).report(&FRAME.id(Identifier::FUNCTION, 0x1));
 
 /// Report on a change. Section 2.
 pub const REPORT_B_ACCESS: Access =
-    Access::new("report_b", &[None, None, None, None, Some(Who::One)]).report(FRAME.id(Identifier::FUNCTION, 0x2));
+    Access::new("report_b", &[None, None, None, None, Some(Who::One)]).report(&FRAME.id(Identifier::FUNCTION, 0x2));
 
 /// What a request wants, or what became of it. Section 5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -994,20 +994,24 @@ impl VoltageSetPoint {
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 100).limits(42.0, 58.0);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2100)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2100)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2100)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2100)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1049,20 +1053,24 @@ impl CurrentLimit {
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 10).limits(0.0, 125.0);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2101)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2101)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2101)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2101)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1103,20 +1111,24 @@ impl OutputSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<OutputCommand> = Signal::new("value", Place::bytes(7, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2102)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2102)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2102)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2102)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1160,20 +1172,24 @@ impl MinimumFanSpeed {
     /// The value of `value` that stands for `automatic`.
     pub const VALUE_AUTOMATIC: u32 = 255;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2103)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2103)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2103)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const WRITE: Exchange = WRITE_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2103)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1213,12 +1229,14 @@ impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2200)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2200)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1251,12 +1269,14 @@ impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2201)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2201)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1297,14 +1317,15 @@ impl HeatSinkTemperature {
     /// The value of `value` that stands for `sensor_broken`.
     pub const VALUE_SENSOR_BROKEN: f64 = 87.5;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange =
-        READ_ACCESS.of("heat_sink_temperature", FRAME.data(INDEX_SELECTOR.place, 0x2202)).refusal(
+    pub const READ: Exchange = READ_ACCESS.of("heat_sink_temperature", FRAME.data(INDEX_SELECTOR.place, 0x2202)).with(
+        &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
                 .data(INDEX_SELECTOR.place, 0x2202)
                 .id(Identifier::FUNCTION, 0x5)
                 .data(OPERATION_SELECTOR.place, 0x80),
-        );
+        ),
+    );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1336,12 +1357,14 @@ impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(7, 4)).unit("Hz");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2203)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2203)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1374,12 +1397,14 @@ impl OperatingTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2204)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2204)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1412,12 +1437,14 @@ impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2300)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2300)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1450,12 +1477,14 @@ impl Firmware {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FirmwareValue> = Signal::new("value", Place::bytes(4, 6));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2301)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2301)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1488,12 +1517,14 @@ impl State {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Conditions> = Signal::new("value", Place::bytes(7, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400)).refusal(
-        &FRAME
-            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-            .data(INDEX_SELECTOR.place, 0x2400)
-            .id(Identifier::FUNCTION, 0x5)
-            .data(OPERATION_SELECTOR.place, 0x80),
+    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400)).with(
+        &Particulars::NOTHING.refusal(
+            &FRAME
+                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+                .data(INDEX_SELECTOR.place, 0x2400)
+                .id(Identifier::FUNCTION, 0x5)
+                .data(OPERATION_SELECTOR.place, 0x80),
+        ),
     );
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.

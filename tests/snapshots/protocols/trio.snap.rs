@@ -224,7 +224,7 @@ pub const TIMING: Timing = Timing::NONE.with_request_gap(Time::of(milliseconds(2
 /// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
 /// pattern", used is "reports that nobody asks for, and commands that nobody answers", because 3.3 has
 /// Request not applicable and a cycle of 200 ms for the one, Response not applicable for the other.
-pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(FRAME);
+pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Set in a module without a reply. Section 3.3.
 ///
@@ -238,7 +238,7 @@ pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).repor
 /// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
 /// pattern", used is "reports that nobody asks for, and commands that nobody answers", because 3.3 has
 /// Request not applicable and a cycle of 200 ms for the one, Response not applicable for the other.
-pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
+pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::Nobody)]).with_values().request(&FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

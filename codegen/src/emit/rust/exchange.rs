@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::filter::filter;
-use super::plan::exchange::{Access, Exchange};
+use super::plan::exchange::{Access, Exchange, SharedFrame};
 use crate::model::Who;
 
 /// Emits the part of an access that messages share.
@@ -13,9 +13,10 @@ pub fn access(access: &Access) -> TokenStream {
     let answers = answers_list(answers);
     let has_values = has_values.then(|| quote!(.with_values()));
     let member_of = member_of.iter().map(|set| quote!(.member_of(#set)));
-    let frames = frames.iter().map(|(kind, shown)| {
+    let frames = frames.iter().map(|SharedFrame { method, filter: shown, is_accepting }| {
         let filter = filter(shown);
-        quote!(.#kind(#filter))
+        let accepting = is_accepting.then(|| quote!(.accepting()));
+        quote!(.#method(&#filter #accepting))
     });
     let from_controller = is_from_controller.then(|| quote!(.from_controller()));
     quote! {
@@ -27,23 +28,31 @@ pub fn access(access: &Access) -> TokenStream {
 
 /// Emits how a message travels by one of its accesses.
 pub fn exchange(exchange: &Exchange) -> TokenStream {
-    let Exchange { constant, comment, shared, message, length, models, .. } = exchange;
+    let Exchange { constant, comment, shared, message, length, .. } = exchange;
     let own = filter(&exchange.filter);
+    let length = length.iter().map(|length| quote!(.length(#length)));
+    let particulars = particulars(exchange).map(|particulars| quote!(.with(&#particulars)));
+    quote! {
+        #comment
+        pub const #constant: Exchange = #shared.of(#message, #own) #(#length)* #particulars;
+    }
+}
+
+/// Emits what only some messages have.
+fn particulars(exchange: &Exchange) -> Option<TokenStream> {
+    let Exchange { models, .. } = exchange;
     let answers = exchange.answers.as_ref().map(|answers| {
         let list = answers_list(answers);
         quote!(.answers(&#list))
     });
-    let length = length.iter().map(|length| quote!(.length(#length)));
     let models = (!models.is_empty()).then(|| quote!(.models(&[#(Model::#models as u8),*])));
     let sent = sent(exchange).map(|sent| quote!(.sending(&#sent)));
     let refusal = exchange.refusal.as_ref().map(|refusal| {
         let filter = filter(refusal);
         quote!(.refusal(&#filter))
     });
-    quote! {
-        #comment
-        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #sent #refusal;
-    }
+    let particulars: TokenStream = [answers, models, sent, refusal].into_iter().flatten().collect();
+    (!particulars.is_empty()).then(|| quote!(Particulars::NOTHING #particulars))
 }
 
 /// Emits what frames have that are built, although any is accepted there.

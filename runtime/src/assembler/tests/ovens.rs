@@ -26,14 +26,14 @@ const SINGLE: Mode = Mode {
 
 const ANSWERS: &[Option<Who>] = &[Some(Who::One)];
 
-const SCAN: Access = Access::new("scan", ANSWERS).request(Filter::STANDARD).reply(Filter::STANDARD);
+const SCAN: Access = Access::new("scan", ANSWERS).request(&Filter::STANDARD).reply(&Filter::STANDARD);
 const SCAN_ALL: Access = of_members("scan").member_of("all");
 const SCAN_PAIR: Access = of_members("scan").member_of("pair");
 const READ: Access = of_members("read");
 
 const fn of_members(name: &'static str) -> Access {
-    let shown = Filter::STANDARD.selectors(&[SIGNAL, RESULT]);
-    Access::new(name, ANSWERS).request(shown).reply(shown)
+    const SHOWN: Filter = Filter::STANDARD.selectors(&[SIGNAL, RESULT]);
+    Access::new(name, ANSWERS).request(&SHOWN).reply(const { &SHOWN.accepting() })
 }
 
 /// Returns how a member travels, alone or as part of a set.

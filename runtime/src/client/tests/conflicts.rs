@@ -20,8 +20,8 @@ const GROUP: To = To::Group(2);
 /// Sets a power, and one module answers for a group, under the number of the group.
 static SET_BY_ONE: Exchange = Access::new("set by one", &[Some(Who::One), Some(Who::Coordinator), None])
     .with_values()
-    .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
-    .reply(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 2))
+    .request(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
+    .reply(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 2))
     .of("heat", FRAME.id(COMMAND, 7))
     .length(4);
 

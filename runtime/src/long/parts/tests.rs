@@ -25,7 +25,7 @@ const MODE: Mode = Mode {
     coordinator: None,
 };
 
-const READ: Access = Access::new("read", &[Some(Who::One)]).request(Filter::STANDARD).reply(Filter::STANDARD);
+const READ: Access = Access::new("read", &[Some(Who::One)]).request(&Filter::STANDARD).reply(&Filter::STANDARD);
 const STATE: Exchange = READ.of("state", Filter::STANDARD.id(COMMAND, 1));
 const CELLS: Exchange = READ.of("cells", Filter::STANDARD.id(COMMAND, 2));
 

@@ -114,7 +114,7 @@ pub const CHARGER_MODE: Mode = Mode {
 };
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Set limit: `command` 0x003. Section 2.
 /// - [`write`](WRITE_ACCESS): the module answers (`charger`).

@@ -165,7 +165,7 @@ pub const MODULE_MODE: Mode = Mode {
 };
 
 /// Write. Section 2.
-pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
+pub const WRITE_ACCESS: Access = Access::new("write", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Set the output: `command` 0x0012. Section 2.
 /// - [`write`](WRITE_ACCESS): the module answers (`module`).

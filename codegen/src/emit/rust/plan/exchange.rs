@@ -36,10 +36,20 @@ pub struct Access {
     pub has_values: bool,
     /// The set whose members the messages are.
     pub member_of: Option<String>,
-    /// The methods that add kinds of frames, and what such frames show.
-    pub frames: Vec<(Ident, Filter)>,
+    /// Its kinds of frames.
+    pub frames: Vec<SharedFrame>,
     /// Whether the controller sends its reports.
     pub is_from_controller: bool,
+}
+
+/// What one kind of frame shows, whatever the message, and the method that adds it.
+pub struct SharedFrame {
+    /// The method.
+    pub method: Ident,
+    /// What it shows.
+    pub filter: Filter,
+    /// Whether a selector in its data says that there is no error.
+    pub is_accepting: bool,
 }
 
 /// How a message travels by one of its accesses.
@@ -150,6 +160,16 @@ impl Shown {
         }
     }
 
+    /// Plans how the access gets it.
+    fn shown(&self, protocol: &Protocol, selectors: &Selectors) -> SharedFrame {
+        let says_normal = self.selectors.iter().any(|id| protocol[*id].normal.is_some());
+        SharedFrame {
+            method: ident(self.kind.name()),
+            filter: Filter::new(selectors, &self.selectors, &self.constants),
+            is_accepting: says_normal && self.kind != Kind::Request,
+        }
+    }
+
     /// Returns what every reply of the message shows, if it is a set.
     fn whole(protocol: &Protocol, message: &Message) -> Option<Self> {
         let set = message.set.as_ref()?;
@@ -188,7 +208,6 @@ impl Access {
         let sentence = format!("{}{}", doc::title(&known.doc, &known.name), membership(protocol, way.set));
         let paragraphs = doc::paragraphs(protocol, &known.doc, &doc::sentence_of(&sentence), None);
         let paragraphs = paragraphs.into_iter().chain(shows);
-        let filter = |frame: &Shown| Filter::new(selectors, &frame.selectors, &frame.constants);
         Self {
             constant: constant.clone(),
             comment: Comment::new(paragraphs.filter(|text| !text.is_empty())),
@@ -196,7 +215,7 @@ impl Access {
             answers: known.answers.to_vec(),
             has_values: way.frames.iter().any(|frame| frame.has_values),
             member_of: way.set.map(|set| protocol[set].name.clone()),
-            frames: way.frames.iter().map(|frame| (ident(frame.kind.name()), filter(frame))).collect(),
+            frames: way.frames.iter().map(|frame| frame.shown(protocol, selectors)).collect(),
             is_from_controller: known.from == Side::Controller,
         }
     }

@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 101] = [
+const TAKEN: [&str; 102] = [
     "Access",
     "Address",
     "AddressType",
@@ -68,8 +68,9 @@ const TAKEN: [&str; 101] = [
     "Ok",
     "Option",
     "PartialEq",
-    "Parted",
     "PackedText",
+    "Parted",
+    "Particulars",
     "Pattern",
     "Payload",
     "Piece",
