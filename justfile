@@ -29,9 +29,9 @@ fuzz target seconds="600":
     cargo run --quiet --bin seeds -- target/fuzz
     cd tests && cargo fuzz run --sanitizer none {{target}} ../target/fuzz/{{target}} -- -max_total_time={{seconds}}
 
-# Every raw value of 32 bits, through each scale that the built-in specs give such a signal; takes long.
+# Every raw value of 32 bits, through each scale that the built-in specs give such a signal; takes minutes.
 sweep:
-    cargo run --quiet --bin sweep
+    cargo run --quiet --release --bin sweep
 
 # Compile `count` random specs and their Rust, from the seed `first` on.
 random-specs count="10000" first="0":
