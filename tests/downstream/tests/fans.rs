@@ -2,8 +2,8 @@
 
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
-    Air, Error, Failure, Frame, Hours, Identifier, Layout, Message, Model, Power, Problem, Replies, Request, SetBlades,
-    SetLamp, SetSpeed, Target, Text,
+    Air, Error, Failure, Frame, History, Hours, Identifier, Layout, Message, Model, Power, Problem, Replies, Request,
+    SetBlades, SetLamp, SetSpeed, Target, Text,
 };
 
 /// Raw -1501, raw 25 and raw 1.
@@ -100,6 +100,14 @@ fn a_reply_says_what_the_fan_measures_or_shows_an_error() {
     assert_eq!(reply(0x0592_E101, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), Some(Err(Failure::Error)));
     assert_eq!(reply(0x0192_E101, &[1, 0x6E, 0, 0, 0x42]), Some(Err(Failure::Length)));
     assert_eq!(reply(0x0192_E102, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), None);
+}
+
+#[test]
+fn a_request_of_a_message_in_parts_gets_its_parts() {
+    let request = History::read(Target::Fan(1)).expect("fan 1 is documented");
+    assert_eq!(*request.frame(), frame(0x0196_01E1, &[0; 8]));
+    let reply = request.reply(&frame(0x0196_E101, &[2, 8, 0, 0xFA, 0xFF, 0xFD, 0xFF, 0]));
+    assert_eq!(reply.map(|reply| reply.values.map(|part| part.part)), Some(Ok(2)));
 }
 
 /// Raw 25 and raw -3.
