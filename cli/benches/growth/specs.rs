@@ -23,8 +23,9 @@ types:
   temperature: {as: signed, unit: °C}
 ";
 
-/// A signal with a scale and a sign, and one of two bytes.
+/// A number with a sign.
 const TEMPERATURE: &str = "{bytes: 4, type: temperature}";
+/// A number of two bytes.
 const COUNT: &str = "{bytes: 5..6}";
 
 /// Members of a set, and sets of a member.
