@@ -282,7 +282,14 @@ const fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
 #[cfg(test)]
 #[expect(clippy::float_cmp, clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "scaling is exact")]
 mod tests {
+    use core::mem::size_of;
+
     use super::*;
+
+    #[test]
+    fn a_signal_without_a_scale_takes_no_byte_more() {
+        assert_eq!(size_of::<Option<Scale>>(), size_of::<Scale>());
+    }
 
     #[test]
     fn ties_go_away_from_zero() {
