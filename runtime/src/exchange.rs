@@ -7,7 +7,7 @@ use core::ptr;
 use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::Required;
 use crate::plumbing::{Shown, Way};
-use crate::{Data, Error, Filter, Layout, Payload, Protocol};
+use crate::{Bits, Data, Error, Filter, Layout, Payload, Place, Protocol};
 
 pub use particulars::{Particulars, Sent};
 
@@ -18,6 +18,8 @@ pub struct Access {
     has_values: bool,
     is_from_controller: bool,
     answers: &'static [Option<Who>],
+    /// The modes in which messages are offered, as bits from the lowest on. Those beyond 8 have none.
+    offered: u8,
     set: Option<&'static str>,
     request: Option<&'static Filter>,
     reply: Option<&'static Filter>,
@@ -32,6 +34,7 @@ impl Access {
             has_values: false,
             is_from_controller: false,
             answers,
+            offered: offered(answers),
             set: None,
             request: None,
             reply: None,
@@ -76,17 +79,10 @@ impl Access {
         Self { is_from_controller: true, request: self.report, ..self }
     }
 
-    /// Returns how a message travels by this access. Its frames also show what `own` requires.
+    /// Returns how a message travels by this access, with eight data bytes.
     #[must_use]
-    pub const fn of(&'static self, message: &'static str, own: Filter) -> Exchange {
-        Exchange {
-            access: self,
-            message,
-            own: own.required(),
-            length: 8,
-            offered: offered(self.answers),
-            particulars: None,
-        }
+    pub const fn of(&'static self, message: &'static str) -> Exchange {
+        Exchange { access: self, message, own: Required::NOTHING, length: 8, offered: self.offered, particulars: None }
     }
 
     /// Returns what a kind of frame shows, whatever the message.
@@ -115,20 +111,42 @@ pub struct Exchange {
 }
 
 impl Exchange {
+    /// Requires a value in a field of the identifier.
+    #[must_use]
+    pub const fn id(mut self, bits: Bits, value: u32) -> Self {
+        self.own = self.own.id(bits, value);
+        self
+    }
+
+    /// Requires a value in the data.
+    #[must_use]
+    pub const fn data(mut self, place: Place, value: u64) -> Self {
+        self.own = self.own.data(place, value);
+        self
+    }
+
+    /// Accepts any value of some bits of a place in the data.
+    #[must_use]
+    pub const fn open(mut self, place: Place, bits: u64) -> Self {
+        self.own = self.own.open(place, bits);
+        self
+    }
+
     /// Sets the number of data bytes of its frames.
     #[must_use]
-    pub const fn length(self, length: u8) -> Self {
-        Self { length, ..self }
+    pub const fn length(mut self, length: u8) -> Self {
+        self.length = length;
+        self
     }
 
     /// Sets what only some messages have.
     #[must_use]
-    pub const fn with(self, particulars: &'static Particulars) -> Self {
-        let offered = match particulars.answers {
-            Some(answers) => offered(answers),
-            None => self.offered,
-        };
-        Self { offered, particulars: Some(particulars), ..self }
+    pub const fn with(mut self, particulars: &'static Particulars) -> Self {
+        if let Some(answers) = particulars.answers {
+            self.offered = offered(answers);
+        }
+        self.particulars = Some(particulars);
+        self
     }
 
     /// Returns the name of the message.

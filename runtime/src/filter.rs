@@ -88,12 +88,37 @@ impl IdFilter {
     }
 }
 
-/// Bits that a frame must show.
-#[derive(Clone, Copy, Debug)]
+/// Bits that a frame must show. Bits of a value outside its mask are only written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Required {
     id: IdFilter,
     data_mask: Data,
     data_value: Data,
+}
+
+impl Required {
+    /// Requires nothing, and writes zeros.
+    pub(crate) const NOTHING: Self = Self { id: IdFilter::ANY, data_mask: [0; 8], data_value: [0; 8] };
+
+    /// Requires a value in a field of the identifier.
+    pub(crate) const fn id(mut self, bits: Bits, value: u32) -> Self {
+        self.id = self.id.id(bits, value);
+        self
+    }
+
+    /// Requires a value in the data.
+    pub(crate) const fn data(mut self, place: Place, value: u64) -> Self {
+        place.put(&mut self.data_mask, u64::MAX);
+        place.put(&mut self.data_value, value);
+        self
+    }
+
+    /// Accepts any value of some bits of a place in the data.
+    pub(crate) const fn open(mut self, place: Place, bits: u64) -> Self {
+        let counting = place.get(&self.data_mask) & !bits;
+        place.put(&mut self.data_mask, counting);
+        self
+    }
 }
 
 /// What the identifier and the data of a frame must show, and what is written when such a frame is
@@ -103,53 +128,51 @@ pub(crate) struct Required {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Filter {
     extended: bool,
-    id_mask: u32,
-    id_value: u32,
-    data_mask: Data,
-    data_value: Data,
+    required: Required,
     selectors: &'static [Selector],
 }
 
 impl Filter {
     /// Accepts every frame with a 29-bit identifier.
-    pub const EXTENDED: Self =
-        Self { extended: true, id_mask: 0, id_value: 0, data_mask: [0; 8], data_value: [0; 8], selectors: &[] };
+    pub const EXTENDED: Self = Self { extended: true, required: Required::NOTHING, selectors: &[] };
     /// Accepts every frame with an 11-bit identifier.
     pub const STANDARD: Self = Self { extended: false, ..Self::EXTENDED };
 
     /// Requires a value in a field of the identifier.
     #[must_use]
-    pub const fn id(self, bits: Bits, value: u32) -> Self {
-        Self { id_mask: put(self.id_mask, bits, u32::MAX), ..self.send_id(bits, value) }
+    pub const fn id(mut self, bits: Bits, value: u32) -> Self {
+        self.required = self.required.id(bits, value);
+        self
     }
 
     /// Writes a value in a field of the identifier, and accepts any.
     #[must_use]
-    pub const fn send_id(self, bits: Bits, value: u32) -> Self {
-        Self { id_mask: put(self.id_mask, bits, 0), id_value: put(self.id_value, bits, value), ..self }
+    pub const fn send_id(mut self, bits: Bits, value: u32) -> Self {
+        let IdFilter { mask, value: others } = self.required.id;
+        self.required.id = IdFilter { mask: put(mask, bits, 0), value: put(others, bits, value) };
+        self
     }
 
     /// Requires a value in the data.
     #[must_use]
     pub const fn data(mut self, place: Place, value: u64) -> Self {
-        place.put(&mut self.data_mask, u64::MAX);
-        place.put(&mut self.data_value, value);
+        self.required = self.required.data(place, value);
         self
     }
 
     /// Accepts any value of some bits of a place in the data.
     #[must_use]
     pub const fn open(mut self, place: Place, bits: u64) -> Self {
-        let counting = place.get(&self.data_mask) & !bits;
-        place.put(&mut self.data_mask, counting);
+        self.required = self.required.open(place, bits);
         self
     }
 
     /// Writes 1 to these bits of the data, and accepts any.
     #[must_use]
     #[inline(always)]
-    pub(crate) const fn filled(self, ones: Data) -> Self {
-        Self { data_value: (word(self.data_value) | word(ones)).to_be_bytes(), ..self }
+    pub(crate) const fn filled(mut self, ones: Data) -> Self {
+        self.required.data_value = (word(self.required.data_value) | word(ones)).to_be_bytes();
+        self
     }
 
     /// Writes into the selectors without a required value that the reply reports no error.
@@ -158,7 +181,7 @@ impl Filter {
         let mut selectors = self.selectors;
         while let [selector, others @ ..] = selectors {
             if let (Some(normal), false) = (selector.normal, self.requires(selector.place)) {
-                selector.place.put(&mut self.data_value, normal);
+                selector.place.put(&mut self.required.data_value, normal);
             }
             selectors = others;
         }
@@ -167,7 +190,7 @@ impl Filter {
 
     /// Tests whether it requires a value at a place of the data.
     pub(crate) const fn requires(&self, place: Place) -> bool {
-        word(place.mask()) & word(self.data_mask) != 0
+        word(place.mask()) & word(self.required.data_mask) != 0
     }
 
     /// Sets the selectors that such frames have in their data.
@@ -180,55 +203,54 @@ impl Filter {
     #[must_use]
     #[inline]
     pub const fn id_bits(self, mask: u32, value: u32) -> Self {
-        let id_value = (self.id_value & !mask) | (value & mask);
-        Self { id_mask: self.id_mask | mask, id_value, ..self }
+        self.narrowed(IdFilter { mask, value: value & mask })
     }
 
     /// Also requires this of the identifier. If both require a bit, `other` counts.
     #[inline(always)]
-    pub(crate) const fn narrowed(self, other: IdFilter) -> Self {
-        let id_value = (self.id_value & !other.mask) | other.value;
-        Self { id_mask: self.id_mask | other.mask, id_value, ..self }
+    pub(crate) const fn narrowed(mut self, other: IdFilter) -> Self {
+        let IdFilter { mask, value } = self.required.id;
+        self.required.id = IdFilter { mask: mask | other.mask, value: (value & !other.mask) | other.value };
+        self
     }
 
     /// Returns what identifiers must show, and that is also `other`. If both require a bit, `other` counts.
     #[inline(always)]
     pub(crate) const fn id_narrowed(&self, other: IdFilter) -> IdFilter {
-        let value = (self.id_value & self.id_mask & !other.mask) | (other.value & other.mask);
-        IdFilter { mask: self.id_mask | other.mask, value }
+        let IdFilter { mask, value } = self.required.id;
+        let value = (value & mask & !other.mask) | (other.value & other.mask);
+        IdFilter { mask: mask | other.mask, value }
     }
 
     /// Also requires what `other` requires. If both require a bit, `other` counts.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
-        self.requiring(other.required())
-    }
-
-    /// Returns the bits that it requires.
-    pub(crate) const fn required(&self) -> Required {
-        let Self { data_mask, data_value, .. } = *self;
-        Required { id: IdFilter { mask: self.id_mask, value: self.id_value }, data_mask, data_value }
+        self.requiring(other.required)
     }
 
     /// Also requires some bits, and those replace its own.
     #[inline(always)]
     pub(crate) const fn requiring(self, Required { id, data_mask, data_value }: Required) -> Self {
         let mask = word(data_mask);
-        let data_value = ((word(self.data_value) & !mask) | (word(data_value) & mask)).to_be_bytes();
-        let data_mask = (word(self.data_mask) | mask).to_be_bytes();
-        Self { data_mask, data_value, ..self.id_bits(id.mask, id.value) }
+        let mut both = self.id_bits(id.mask, id.value);
+        both.required.data_value = ((word(self.required.data_value) & !mask) | (word(data_value) & mask)).to_be_bytes();
+        both.required.data_mask = (word(self.required.data_mask) | mask).to_be_bytes();
+        both
     }
 
     /// Writes some bits of the identifier, and accepts any.
     #[inline(always)]
-    pub(crate) const fn sending(self, IdFilter { mask, value }: IdFilter) -> Self {
-        Self { id_mask: self.id_mask & !mask, id_value: (self.id_value & !mask) | value, ..self }
+    pub(crate) const fn sending(mut self, IdFilter { mask, value }: IdFilter) -> Self {
+        let id = self.required.id;
+        self.required.id = IdFilter { mask: id.mask & !mask, value: (id.value & !mask) | value };
+        self
     }
 
     /// Tests whether a frame can show what both require.
     pub(crate) const fn overlaps(&self, other: &Self) -> bool {
-        let data = (word(self.data_value) ^ word(other.data_value)) & word(self.data_mask) & word(other.data_mask);
-        let id = (self.id_value ^ other.id_value) & self.id_mask & other.id_mask;
+        let (one, two) = (&self.required, &other.required);
+        let data = (word(one.data_value) ^ word(two.data_value)) & word(one.data_mask) & word(two.data_mask);
+        let id = (one.id.value ^ two.id.value) & one.id.mask & two.id.mask;
         self.extended == other.extended && id == 0 && data == 0
     }
 
@@ -245,13 +267,13 @@ impl Filter {
     /// Tests an identifier of the right width.
     #[inline]
     pub const fn matches_id(&self, id: u32) -> bool {
-        (id ^ self.id_value) & self.id_mask == 0
+        self.required.id.matches(id)
     }
 
     /// Tests data bytes.
     #[inline]
     pub const fn matches_data(&self, data: &Data) -> bool {
-        (word(*data) ^ word(self.data_value)) & word(self.data_mask) == 0
+        (word(*data) ^ word(self.required.data_value)) & word(self.required.data_mask) == 0
     }
 
     /// Returns the selectors that such frames have in their data.
@@ -268,35 +290,35 @@ impl Filter {
 
     /// Returns the bits of the identifier that count: the mask of a hardware acceptance filter.
     pub const fn id_mask(&self) -> u32 {
-        self.id_mask
+        self.required.id.mask
     }
 
     /// Returns the value of these bits: the identifier of a hardware acceptance filter.
     pub const fn id_value(&self) -> u32 {
-        self.id_value & self.id_mask
+        self.required.id.value & self.required.id.mask
     }
 
     /// Returns the bits of the data that count.
     pub const fn data_mask(&self) -> Data {
-        self.data_mask
+        self.required.data_mask
     }
 
     /// Returns the bytes that are written when such a frame is built.
     #[inline]
     pub const fn data_value(&self) -> Data {
-        self.data_value
+        self.required.data_value
     }
 
     /// Returns the identifier that is written when such a frame is built.
     #[inline]
     pub(crate) const fn sent_id(&self) -> u32 {
-        self.id_value
+        self.required.id.value
     }
 
     /// Returns the frame that shows what the filter requires. Elsewhere it has what the spec sends,
     /// or zeros. A reply reports no error.
     pub const fn frame(&self, length: u8) -> Frame {
-        Frame::new_raw(self.id_value, self.extended, self.data_value, length)
+        Frame::new_raw(self.required.id.value, self.extended, self.required.data_value, length)
     }
 }
 

@@ -272,7 +272,7 @@ fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
     const ALL: Access = Access::new("set", &[None; 3]).request(&FRAME).reply(&FRAME).report(&FRAME);
     const SENT: Sent = Sent::NOTHING.id(PRIORITY, 4).request([0xFF; 8]).reply([0x0F; 8]).report([0xF0; 8]);
     const URGENT: Sent = Sent::NOTHING.id(PRIORITY, 4);
-    let every = ALL.of("boost", FRAME);
+    let every = ALL.of("boost");
     let own = every.with(const { &Particulars::NOTHING.sending(&SENT) });
     let urgent = every.with(const { &Particulars::NOTHING.sending(&URGENT) });
     let plain = |kind| urgent.filter(kind).map(|filter| filter.frame(8).bytes());
@@ -288,7 +288,7 @@ fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
 fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
     const SENT: Sent = Sent::NOTHING.request([1; 8]).reply([2; 8]).report([4; 8]);
     static EVERY: Exchange =
-        Access::new("set", &[None; 3]).of("heat", FRAME).length(4).with(&Particulars::NOTHING.sending(&SENT));
+        Access::new("set", &[None; 3]).of("heat").length(4).with(&Particulars::NOTHING.sending(&SENT));
     let built = |exchange: &'static Exchange, kind| {
         let short = Frame::new_raw(0x0107_F003, true, [0x80, 0, 0, 0, 0, 0, 0, 0], 1);
         let received = Received::new(Message::Heat(Heat { power_w: 0.0 }), exchange, kind, short, None);
@@ -303,7 +303,7 @@ fn a_longer_frame_than_the_received_one_has_spare_bits_as_they_are_sent() {
 #[test]
 fn a_message_of_some_device_models_is_refused_for_the_others() {
     const BOOST: Exchange =
-        Access::new("set", &[None; 3]).of("boost", FRAME).length(4).with(&Particulars::NOTHING.models(&[1, 4]));
+        Access::new("set", &[None; 3]).of("boost").length(4).with(&Particulars::NOTHING.models(&[1, 4]));
     let refused = Err(Error::Model { message: "boost" });
     assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
     assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));

@@ -141,28 +141,31 @@ impl Heat {
         .with_values()
         .request(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
         .reply(&FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2).accepting())
-        .of("heat", FRAME.id(COMMAND, 7))
+        .of("heat")
+        .id(COMMAND, 7)
         .length(4)
         .with(&Particulars::NOTHING.refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1)));
     pub const READ: Exchange = Access::new("read", &[None, Some(Who::Coordinator), None])
         .request(&FRAME)
         .reply(&FRAME)
-        .of("heat", FRAME.id(COMMAND, 8))
+        .of("heat")
+        .id(COMMAND, 8)
         .length(4);
     pub const ASK: Exchange = Access::new("ask", &[Some(Who::One), Some(Who::Each), None])
         .request(&FRAME)
         .reply(&FRAME)
-        .of("heat", FRAME.id(COMMAND, 0x0C))
+        .of("heat")
+        .id(COMMAND, 0x0C)
         .length(4);
     pub const REPORT: Exchange =
-        Access::new("report", &[None; 3]).report(&FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+        Access::new("report", &[None; 3]).report(&FRAME).of("heat").id(COMMAND, 0x0B).length(4);
     pub const REPORT_1: Exchange = Self::REPORT.with(&Particulars::NOTHING.models(&[1]));
     pub const REPORT_2: Exchange = Access::new("report of model 2", &[None; 3])
         .report(&FRAME)
-        .of("heat", FRAME)
+        .of("heat")
         .length(4)
         .with(&Particulars::NOTHING.models(&[2]));
-    pub const PROBE: Exchange = Access::new("probe", &[None; 3]).of("heat", FRAME).length(2);
+    pub const PROBE: Exchange = Access::new("probe", &[None; 3]).of("heat").length(2);
 
     pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
         Self::SET.request_to(route, &self)

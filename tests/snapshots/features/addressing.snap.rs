@@ -285,7 +285,7 @@ impl Level {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8> = Signal::new("value", Place::byte(0)).unit("%").limits(0, 100);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("level", FRAME.id(Identifier::COMMAND, 0x03));
+    pub const SET: Exchange = SET_ACCESS.of("level").id(Identifier::COMMAND, 0x03);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -155,7 +155,7 @@ impl Cells {
     /// The signal `group_2`, to read or write it alone, or to ask for its limits.
     pub const GROUP_2: Signal<Group> = Signal::new("group_2", Place::byte(5).bits(7, 4));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("cells", FRAME.id(Identifier::COMMAND, 0x12)).length(4);
+    pub const REPORT: Exchange = REPORT_ACCESS.of("cells").id(Identifier::COMMAND, 0x12).length(4);
 }
 
 impl Layout for Cells {
@@ -226,7 +226,7 @@ impl State {
     pub const CURRENT_2: Signal<i16, f64> =
         Signal::new("current_2", Place::bytes(5, 6)).unit("A").scale(1, 10).specials(&[(32_767, "unlimited")]);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x13));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("state").id(Identifier::COMMAND, 0x13);
 }
 
 impl Layout for State {

@@ -134,7 +134,7 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("rpm").scale(10, 1);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.id(Identifier::COMMAND, 0x002)).length(2);
+    pub const READ: Exchange = READ_ACCESS.of("speed").id(Identifier::COMMAND, 0x002).length(2);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -168,7 +168,7 @@ impl Temperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8, f64> = Signal::new("value", Place::byte(1)).unit("°C").offset(-40, 1);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("temperature", FRAME.id(Identifier::COMMAND, 0x003)).length(2);
+    pub const READ: Exchange = READ_ACCESS.of("temperature").id(Identifier::COMMAND, 0x003).length(2);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

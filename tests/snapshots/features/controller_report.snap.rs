@@ -143,8 +143,7 @@ impl Delivered {
     pub const VOLTAGE: Signal<u16, f64> =
         Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(0.0, 1000.0);
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange =
-        CHARGER_CYCLE_ACCESS.of("delivered", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("delivered").id(Identifier::NUMBER, 0x01).length(4);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -178,8 +177,7 @@ impl Demanded {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The access `vehicle_cycle`, for filters and blank frames of it.
-    pub const VEHICLE_CYCLE: Exchange =
-        VEHICLE_CYCLE_ACCESS.of("demanded", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
+    pub const VEHICLE_CYCLE: Exchange = VEHICLE_CYCLE_ACCESS.of("demanded").id(Identifier::NUMBER, 0x01).length(4);
 }
 
 impl Layout for Demanded {

@@ -135,7 +135,7 @@ impl NoteSize {
     /// The signal `letters`, to read or write it alone, or to ask for its limits.
     pub const LETTERS: Signal<u8> = Signal::new("letters", Place::byte(0));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("note_size", FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("note_size").id(Identifier::COMMAND, 0x21);
 }
 
 impl Layout for NoteSize {
@@ -194,7 +194,7 @@ impl NotePart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("note", FRAME.id(Identifier::COMMAND, 0x22));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("note").id(Identifier::COMMAND, 0x22);
 }
 
 impl Layout for NotePart {
@@ -273,7 +273,7 @@ impl RemarkPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("remark", FRAME.id(Identifier::COMMAND, 0x23));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("remark").id(Identifier::COMMAND, 0x23);
 }
 
 impl Layout for RemarkPart {

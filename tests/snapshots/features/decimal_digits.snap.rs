@@ -215,7 +215,7 @@ impl Delay {
     /// The value of `value` that stands for `none`.
     pub const VALUE_NONE: Bcd<u16> = Bcd::from_raw(0xFFFF);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("delay", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const SET: Exchange = SET_ACCESS.of("delay").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -274,7 +274,7 @@ impl Output {
         .specials(&[(65_535, "not_available")])
         .absent();
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("output", FRAME.id(Identifier::COMMAND, 0x03));
+    pub const SET: Exchange = SET_ACCESS.of("output").id(Identifier::COMMAND, 0x03);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -314,7 +314,7 @@ impl Month {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<MonthValue> = Signal::new("value", Place::bytes(0, 1));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("month", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const SET: Exchange = SET_ACCESS.of("month").id(Identifier::COMMAND, 0x02);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

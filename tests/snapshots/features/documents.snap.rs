@@ -135,7 +135,7 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(0, 1)).unit("rpm");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.id(Identifier::COMMAND, 0x002)).length(2);
+    pub const READ: Exchange = READ_ACCESS.of("speed").id(Identifier::COMMAND, 0x002).length(2);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

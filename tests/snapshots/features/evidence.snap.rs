@@ -163,7 +163,7 @@ impl Battery {
     /// The signal `level`, to read or write it alone, or to ask for its limits.
     pub const LEVEL: Signal<u8> = Signal::new("level", Place::byte(4)).unit("%");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("battery", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ: Exchange = READ_ACCESS.of("battery").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

@@ -169,8 +169,7 @@ impl DcStatusPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange =
-        REPORT_ACCESS.of("dc_status", FRAME.id(Identifier::FORMAT, 0xF2).id(Identifier::GROUP, 0x12));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("dc_status").id(Identifier::FORMAT, 0xF2).id(Identifier::GROUP, 0x12);
 }
 
 impl Layout for DcStatusPart {

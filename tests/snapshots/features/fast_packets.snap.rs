@@ -200,8 +200,7 @@ impl EnginePart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange =
-        REPORT_ACCESS.of("engine", FRAME.id(Identifier::FORMAT, 0xF2).id(Identifier::GROUP, 0x01));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("engine").id(Identifier::FORMAT, 0xF2).id(Identifier::GROUP, 0x01);
 }
 
 impl Layout for EnginePart {
@@ -301,8 +300,7 @@ impl CellsPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange =
-        REPORT_ACCESS.of("cells", FRAME.id(Identifier::FORMAT, 0xFF).id(Identifier::GROUP, 0x01));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("cells").id(Identifier::FORMAT, 0xFF).id(Identifier::GROUP, 0x01);
 }
 
 impl Layout for CellsPart {

@@ -182,7 +182,7 @@ pub struct All {
 
 impl All {
     /// The access `scan`, for filters and blank frames of it.
-    pub const SCAN: Exchange = SCAN_ACCESS.of("all", FRAME.id(Identifier::COMMAND, 0x04));
+    pub const SCAN: Exchange = SCAN_ACCESS.of("all").id(Identifier::COMMAND, 0x04);
 
     /// Builds the request [`scan`](SCAN_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -228,7 +228,7 @@ impl Heat {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i16> = Signal::new("value", Place::bytes(1, 2)).unit("°C");
     /// The access `scan` in the set `all`, for filters and blank frames of it.
-    pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("heat", FRAME.data(SIGNAL_SELECTOR.place, 0x01));
+    pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("heat").data(SIGNAL_SELECTOR.place, 0x01);
 }
 
 impl Layout for Heat {
@@ -255,7 +255,7 @@ impl Power {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(1, 2));
     /// The access `scan` in the set `all`, for filters and blank frames of it.
-    pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("power", FRAME.data(SIGNAL_SELECTOR.place, 0x02));
+    pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("power").data(SIGNAL_SELECTOR.place, 0x02);
 }
 
 impl Layout for Power {

@@ -156,7 +156,7 @@ impl State {
     /// The signal `warnings_level`, to read or write it alone, or to ask for its limits.
     pub const WARNINGS_LEVEL: Signal<u8, f64> = Signal::new("warnings_level", Place::byte(3)).unit("V").scale(1, 2);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME).length(4);
+    pub const REPORT: Exchange = REPORT_ACCESS.of("state").length(4);
 }
 
 impl Layout for State {

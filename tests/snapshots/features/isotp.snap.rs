@@ -320,7 +320,7 @@ impl Maker {
     /// The signal `name`, to read or write it alone, or to ask for its limits.
     pub const NAME: LongText<Text<21>> = LongText::new(3, Signal::new("name", Place::byte(0))).at_least(2);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("maker", FRAME.data(ITEM_SELECTOR.place, 0x10));
+    pub const READ: Exchange = READ_ACCESS.of("maker").data(ITEM_SELECTOR.place, 0x10);
 
     /// Returns what sends the request [`read`](READ_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -351,7 +351,7 @@ pub struct Restart;
 
 impl Restart {
     /// The access `reset`, for filters and blank frames of it.
-    pub const RESET: Exchange = RESET_ACCESS.of("restart", FRAME);
+    pub const RESET: Exchange = RESET_ACCESS.of("restart");
 
     /// Returns what sends the request [`reset`](RESET_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -392,12 +392,14 @@ impl TpSingleFrame {
     pub const DATA_7: Signal<Bytes<1>> = Signal::new("data_7", Place::byte(7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
+        .of("tp_single_frame")
+        .data(PCI_SELECTOR.place, 0x0)
         .length(2)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_single_frame", FRAME.data(PCI_SELECTOR.place, 0x0))
+        .of("tp_single_frame")
+        .data(PCI_SELECTOR.place, 0x0)
         .length(2)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
@@ -490,11 +492,13 @@ impl TpFirstFrame {
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
+        .of("tp_first_frame")
+        .data(PCI_SELECTOR.place, 0x1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_first_frame", FRAME.data(PCI_SELECTOR.place, 0x1))
+        .of("tp_first_frame")
+        .data(PCI_SELECTOR.place, 0x1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
@@ -551,12 +555,14 @@ impl TpConsecutiveFrame {
     pub const DATA_7: Signal<Bytes<1>> = Signal::new("data_7", Place::byte(7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
+        .of("tp_consecutive_frame")
+        .data(PCI_SELECTOR.place, 0x2)
         .length(2)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_consecutive_frame", FRAME.data(PCI_SELECTOR.place, 0x2))
+        .of("tp_consecutive_frame")
+        .data(PCI_SELECTOR.place, 0x2)
         .length(2)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
@@ -661,12 +667,14 @@ impl TpFlowControl {
     pub const PADDING: Signal<Bytes<5>> = Signal::new("padding", Place::bytes(3, 7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
+        .of("tp_flow_control")
+        .data(PCI_SELECTOR.place, 0x3)
         .length(3)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_flow_control", FRAME.data(PCI_SELECTOR.place, 0x3))
+        .of("tp_flow_control")
+        .data(PCI_SELECTOR.place, 0x3)
         .length(3)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 

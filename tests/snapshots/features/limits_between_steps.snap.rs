@@ -150,7 +150,7 @@ impl SetLimit {
     /// The value of `cold` that stands for `unknown`.
     pub const COLD_UNKNOWN: f64 = -32.0;
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit", FRAME.id(Identifier::COMMAND, 0x003));
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit").id(Identifier::COMMAND, 0x003);
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -192,7 +192,7 @@ impl SetTotal {
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u64> = Signal::new("total", Place::bytes(0, 7)).limits(1, 9_007_199_254_740_995);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("set_total", FRAME.id(Identifier::COMMAND, 0x004));
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_total").id(Identifier::COMMAND, 0x004);
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.

@@ -123,7 +123,7 @@ impl Measurement {
     /// The signal `counter`, to read or write it alone, or to ask for its limits.
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("measurement", FRAME.id(Identifier::FUNCTION, 0x1));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("measurement").id(Identifier::FUNCTION, 0x1);
 }
 
 impl Layout for Measurement {

@@ -208,7 +208,7 @@ impl PackPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("pack", FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("pack").id(Identifier::COMMAND, 0x21);
 }
 
 impl Layout for PackPart {

@@ -127,7 +127,7 @@ impl MakerPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("maker", FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("maker").id(Identifier::COMMAND, 0x21);
 }
 
 impl Layout for MakerPart {
@@ -203,7 +203,7 @@ impl LabelPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x22));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("label").id(Identifier::COMMAND, 0x22);
 }
 
 impl Layout for LabelPart {

@@ -160,7 +160,8 @@ impl SupplyAc {
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS
-        .of("supply_ac", FRAME.id(Identifier::COMMAND, 0x001))
+        .of("supply_ac")
+        .id(Identifier::COMMAND, 0x001)
         .length(2)
         .with(&Particulars::NOTHING.models(&[Model::P10a as u8]));
 }
@@ -190,7 +191,8 @@ impl SupplyDc {
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS
-        .of("supply_dc", FRAME.id(Identifier::COMMAND, 0x001))
+        .of("supply_dc")
+        .id(Identifier::COMMAND, 0x001)
         .length(2)
         .with(&Particulars::NOTHING.models(&[Model::P48vDc as u8]));
 }

@@ -188,7 +188,8 @@ impl SetSpeed {
         Signal::new("flow", Place::bytes(2, 3)).unit("%").scale(1, 10).limits(-30.0, 30.5).model_limits(FLOW_LIMITS);
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS
-        .of("set_speed", FRAME.id(Identifier::COMMAND, 0x002))
+        .of("set_speed")
+        .id(Identifier::COMMAND, 0x002)
         .length(4)
         .with(&Particulars::NOTHING.models(&[Model::P10a as u8, Model::P48vDc as u8]));
 

@@ -253,7 +253,7 @@ impl SwitchRelay {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<SwitchRelayPower> = Signal::new("power", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch_relay", FRAME.id(Identifier::COMMAND, 0x91));
+    pub const SET: Exchange = SET_ACCESS.of("switch_relay").id(Identifier::COMMAND, 0x91);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

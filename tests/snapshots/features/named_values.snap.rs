@@ -269,7 +269,7 @@ impl Switch {
     /// The signal `lamp`, to read or write it alone, or to ask for its limits.
     pub const LAMP: Signal<SwitchLamp> = Signal::new("lamp", Place::bytes(1, 2));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch", FRAME.id(Identifier::COMMAND, 0x1A));
+    pub const SET: Exchange = SET_ACCESS.of("switch").id(Identifier::COMMAND, 0x1A);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

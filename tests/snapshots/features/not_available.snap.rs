@@ -243,7 +243,7 @@ impl Limits {
     /// The signal `day`, to read or write it alone, or to ask for its limits.
     pub const DAY: Signal<u8> = Signal::new("day", Place::byte(5)).specials(&[(255, "not_available")]).absent();
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x12)).length(5);
+    pub const SET: Exchange = SET_ACCESS.of("limits").id(Identifier::COMMAND, 0x12).length(5);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -173,7 +173,7 @@ impl State {
     /// The signal `cycles`, to read or write it alone, or to ask for its limits.
     pub const CYCLES: Signal<u8> = Signal::new("cycles", Place::byte(6));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x12)).length(3);
+    pub const REPORT: Exchange = REPORT_ACCESS.of("state").id(Identifier::COMMAND, 0x12).length(3);
 }
 
 impl Layout for State {
@@ -228,7 +228,7 @@ impl Limit {
     /// The signal `ramp`, to read or write it alone, or to ask for its limits.
     pub const RAMP: Signal<u8> = Signal::new("ramp", Place::byte(1)).unit("s");
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("limit", FRAME.id(Identifier::COMMAND, 0x13)).length(1);
+    pub const SET: Exchange = SET_ACCESS.of("limit").id(Identifier::COMMAND, 0x13).length(1);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -161,7 +161,7 @@ impl SetDose {
     /// The signal `weight`, to read or write it alone, or to ask for its limits.
     pub const WEIGHT: Signal<i16> = Signal::new("weight", Place::bytes(2, 3)).unit("kg");
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_dose", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
+    pub const SET: Exchange = SET_ACCESS.of("set_dose").id(Identifier::COMMAND, 0x002).length(4);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -217,7 +217,7 @@ impl Label {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<LabelValue> = Signal::new("value", Place::bytes(1, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS.of("label").id(Identifier::COMMAND, 0x06);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

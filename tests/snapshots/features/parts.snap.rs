@@ -155,7 +155,7 @@ impl State {
     /// The signal `cells`, to read or write it alone, or to ask for its limits.
     pub const CELLS: Signal<u8> = Signal::new("cells", Place::byte(0));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ: Exchange = READ_ACCESS.of("state").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -240,7 +240,7 @@ impl CellsPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(1, 6));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("cells", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ: Exchange = READ_ACCESS.of("cells").id(Identifier::COMMAND, 0x02);
 }
 
 impl Layout for CellsPart {

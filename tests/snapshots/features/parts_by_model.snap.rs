@@ -223,7 +223,8 @@ impl LabelPart {
     pub const DATA: Signal<Bytes<3>> = Signal::new("data", Place::bytes(1, 3));
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
-        .of("label", FRAME.id(Identifier::COMMAND, 0x03))
+        .of("label")
+        .id(Identifier::COMMAND, 0x03)
         .length(4)
         .with(&Particulars::NOTHING.models(&[Model::A as u8, Model::B as u8]));
 }

@@ -178,7 +178,7 @@ impl LabelPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `tell`, for filters and blank frames of it.
-    pub const TELL: Exchange = TELL_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x0E));
+    pub const TELL: Exchange = TELL_ACCESS.of("label").id(Identifier::COMMAND, 0x0E);
 }
 
 impl Layout for LabelPart {

@@ -205,7 +205,7 @@ impl State {
     /// The signal `steps`, to read or write it alone, or to ask for its limits.
     pub const STEPS: Signal<u8> = Signal::new("steps", Place::byte(0));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ: Exchange = READ_ACCESS.of("state").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -298,9 +298,9 @@ impl ProgramPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(1, 6));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("program", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ: Exchange = READ_ACCESS.of("program").id(Identifier::COMMAND, 0x02);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("program", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const SET: Exchange = SET_ACCESS.of("program").id(Identifier::COMMAND, 0x02);
 }
 
 impl Layout for ProgramPart {

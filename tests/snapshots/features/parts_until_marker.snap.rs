@@ -205,7 +205,7 @@ impl LabelPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ: Exchange = READ_ACCESS.of("label").id(Identifier::COMMAND, 0x02);
 }
 
 impl Layout for LabelPart {

@@ -109,7 +109,7 @@ impl TripsPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(1, 6));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("trips", FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("trips").id(Identifier::COMMAND, 0x21);
 }
 
 impl Layout for TripsPart {

@@ -233,7 +233,7 @@ impl Limits {
     pub const CURRENT: Signal<u16, f64> =
         Signal::new("current", Place::bytes(0, 1)).unit("A").scale(1, 10).limits(0.0, 250.0);
     /// The access `offer`, for filters and blank frames of it.
-    pub const OFFER: Exchange = OFFER_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x0001)).length(2);
+    pub const OFFER: Exchange = OFFER_ACCESS.of("limits").id(Identifier::COMMAND, 0x0001).length(2);
 
     /// Builds the request [`offer`](OFFER_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.

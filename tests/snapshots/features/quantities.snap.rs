@@ -274,7 +274,7 @@ impl Control {
     pub const VOLTAGE: Signal<u16, f64> =
         Signal::new("voltage", Place::bytes(2, 3)).unit("V").scale(1, 10).limits(10.0, 500.0);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x03)).length(4);
+    pub const SET: Exchange = SET_ACCESS.of("control").id(Identifier::COMMAND, 0x03).length(4);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

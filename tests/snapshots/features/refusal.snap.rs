@@ -143,7 +143,7 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("rpm").limits(300, 3000);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x07)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("speed").data(INDEX_SELECTOR.place, 0x07).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -184,7 +184,7 @@ impl Refusal {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8> = Signal::new("value", Place::byte(7));
     /// The access `refuse`, for filters and blank frames of it.
-    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
+    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal");
 }
 
 impl Layout for Refusal {

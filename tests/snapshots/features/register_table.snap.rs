@@ -195,9 +195,9 @@ impl VoltageLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").limits(0.1, 750.0);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("voltage_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
+    pub const READ: Exchange = READ_ACCESS.of("voltage_limit").data(REGISTER_SELECTOR.place, 0x0021);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
+    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_limit").data(REGISTER_SELECTOR.place, 0x0021);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

@@ -147,7 +147,7 @@ impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
+    pub const READ: Exchange = READ_ACCESS.of("voltage").data(REGISTER_SELECTOR.place, 0x0001);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -185,7 +185,7 @@ impl Revision {
     /// The signal `software`, to read or write it alone, or to ask for its limits.
     pub const SOFTWARE: Signal<u16> = Signal::new("software", Place::bytes(6, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("revision", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
+    pub const READ: Exchange = READ_ACCESS_2.of("revision").data(REGISTER_SELECTOR.place, 0x0056);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.

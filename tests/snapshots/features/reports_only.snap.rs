@@ -76,7 +76,7 @@ impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("V").scale(1, 100);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("voltage", FRAME).length(2);
+    pub const REPORT: Exchange = REPORT_ACCESS.of("voltage").length(2);
 }
 
 impl Layout for Voltage {

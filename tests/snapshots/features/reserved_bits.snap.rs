@@ -194,7 +194,7 @@ impl SetCurrent {
     pub const CURRENT: Signal<u16, f64> =
         Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10).limits(0.0, 1000.0);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("set_current", FRAME.id(Identifier::COMMAND, 0x012)).length(4).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_current").id(Identifier::COMMAND, 0x012).length(4).with(
         &Particulars::NOTHING.sending(
             &Sent::NOTHING
                 .id(Identifier::PRIORITY, 0x4)
@@ -236,7 +236,7 @@ impl Stop {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(0));
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("stop", FRAME.id(Identifier::COMMAND, 0x013)).length(4).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("stop").id(Identifier::COMMAND, 0x013).length(4).with(
         &Particulars::NOTHING.sending(
             &Sent::NOTHING
                 .request([0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00])

@@ -228,7 +228,7 @@ impl SetLimits {
     pub const ALARMS: Signal<SetLimitsAlarms> =
         Signal::new("alarms", Place::byte(2)).lacking(&[(Model::V1_2 as u8, Lack::Bits(0x02, 0x00))]);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_limits", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
+    pub const SET: Exchange = SET_ACCESS.of("set_limits").id(Identifier::COMMAND, 0x002).length(4);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

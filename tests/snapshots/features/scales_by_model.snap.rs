@@ -223,7 +223,7 @@ impl SetOutput {
     }
 
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
+    pub const SET: Exchange = SET_ACCESS.of("set_output").id(Identifier::COMMAND, 0x002).length(4);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

@@ -231,7 +231,7 @@ impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4)).unit("rpm").limits(0, 6000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).with(
+    pub const READ: Exchange = READ_ACCESS.of("speed").data(INDEX_SELECTOR.place, 0x2001).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
@@ -240,7 +240,7 @@ impl Speed {
         ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x2001)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("speed").data(INDEX_SELECTOR.place, 0x2001).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR])
@@ -287,7 +287,7 @@ impl Aborted {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AbortedValue> = Signal::new("value", Place::bytes(7, 4));
     /// The access `abort`, for filters and blank frames of it.
-    pub const ABORT: Exchange = ABORT_ACCESS.of("aborted", FRAME);
+    pub const ABORT: Exchange = ABORT_ACCESS.of("aborted");
 }
 
 impl Layout for Aborted {

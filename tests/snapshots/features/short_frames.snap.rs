@@ -180,7 +180,7 @@ impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<u8> = Signal::new("outputs", Place::byte(1));
     /// The access `tell`, for filters and blank frames of it.
-    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
+    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive").data(SIGN_SELECTOR.place, 0x55).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -219,7 +219,7 @@ impl Drift {
     /// The signal `turns`, to read or write it alone, or to ask for its limits.
     pub const TURNS: Signal<i16> = Signal::new("turns", Place::bytes(5, 4)).unit("rpm");
     /// The access `ask`, for filters and blank frames of it.
-    pub const ASK: Exchange = ASK_ACCESS.of("drift", FRAME).length(6);
+    pub const ASK: Exchange = ASK_ACCESS.of("drift").length(6);
 
     /// Builds the request [`ask`](ASK_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

@@ -133,7 +133,7 @@ impl State {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::NUMBER, 0x001)).length(4);
+    pub const READ: Exchange = READ_ACCESS.of("state").id(Identifier::NUMBER, 0x001).length(4);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -166,7 +166,7 @@ impl Load {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(0, 1)).unit("W").limits(0, 5000);
     /// The access `tell`, for filters and blank frames of it.
-    pub const TELL: Exchange = TELL_ACCESS.of("load", FRAME.id(Identifier::NUMBER, 0x002)).length(4);
+    pub const TELL: Exchange = TELL_ACCESS.of("load").id(Identifier::NUMBER, 0x002).length(4);
 
     /// Builds the report [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.

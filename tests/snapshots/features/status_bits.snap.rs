@@ -265,7 +265,7 @@ impl Failures {
     /// The signal `maker`, to read or write it alone, or to ask for its limits.
     pub const MAKER: Signal<FailuresMaker> = Signal::new("maker", Place::byte(7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("failures", FRAME.id(Identifier::COMMAND, 0x18));
+    pub const READ: Exchange = READ_ACCESS.of("failures").id(Identifier::COMMAND, 0x18);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

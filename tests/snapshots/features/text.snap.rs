@@ -155,7 +155,7 @@ impl Version {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(0, 5));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("version", FRAME.id(Identifier::COMMAND, 0x05));
+    pub const READ: Exchange = READ_ACCESS.of("version").id(Identifier::COMMAND, 0x05);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -193,7 +193,7 @@ impl Label {
     /// The signal `code`, to read or write it alone, or to ask for its limits.
     pub const CODE: Signal<Bytes<3>> = Signal::new("code", Place::bytes(6, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS.of("label").id(Identifier::COMMAND, 0x06);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

@@ -172,7 +172,7 @@ impl Temperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("°C").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("temperature", FRAME.id(Identifier::COMMAND, 0x01)).length(4);
+    pub const READ: Exchange = READ_ACCESS.of("temperature").id(Identifier::COMMAND, 0x01).length(4);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -200,7 +200,7 @@ pub struct Alive;
 
 impl Alive {
     /// The access `tell`, for filters and blank frames of it.
-    pub const TELL: Exchange = TELL_ACCESS.of("alive", FRAME.id(Identifier::COMMAND, 0x02)).length(4);
+    pub const TELL: Exchange = TELL_ACCESS.of("alive").id(Identifier::COMMAND, 0x02).length(4);
 
     /// Builds the request [`tell`](TELL_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

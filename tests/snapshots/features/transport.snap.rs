@@ -221,7 +221,7 @@ impl Battery {
     /// The signal `month`, to read or write it alone, or to ask for its limits.
     pub const MONTH: LongSignal<u8> = LongSignal::new(12, Signal::new("month", Place::byte(0)));
     /// The access `of_vehicle`, for filters and blank frames of it.
-    pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS.of("battery", FRAME.id(Identifier::FORMAT, 0x02));
+    pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS.of("battery").id(Identifier::FORMAT, 0x02);
 }
 
 impl LongLayout for Battery {
@@ -270,7 +270,7 @@ impl Profile {
         LongSignal::new(0, Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10).limits(0.0, 250.0))
             .every(2);
     /// The access `of_charger`, for filters and blank frames of it.
-    pub const OF_CHARGER: Exchange = OF_CHARGER_ACCESS.of("profile", FRAME.id(Identifier::FORMAT, 0x16));
+    pub const OF_CHARGER: Exchange = OF_CHARGER_ACCESS.of("profile").id(Identifier::FORMAT, 0x16);
 
     /// Returns what sends the report [`of_charger`](OF_CHARGER_ACCESS) with these values. The data are
     /// written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
@@ -323,11 +323,15 @@ impl TpRequestToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
@@ -382,13 +386,17 @@ impl TpClearToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -438,13 +446,17 @@ impl TpEndOfMessage {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -493,14 +505,17 @@ impl TpBroadcast {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_broadcast").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
+        .of("tp_broadcast")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x20)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -545,17 +560,19 @@ impl TpAbort {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
-    pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_CONTROLLER: Exchange =
+        TP_OF_CONTROLLER_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -596,11 +613,13 @@ impl TpData {
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values

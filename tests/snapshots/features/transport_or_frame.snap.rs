@@ -201,7 +201,7 @@ impl Cells {
     /// The elements of `group`, to read or write one alone, or to ask for their limits.
     pub const GROUP: LongSignal<u8> = LongSignal::new(0, Signal::new("group", Place::byte(1).bits(7, 4))).every(2);
     /// The access `of_vehicle`, for filters and blank frames of it.
-    pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS.of("cells", FRAME.id(Identifier::FORMAT, 0x15)).length(2);
+    pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS.of("cells").id(Identifier::FORMAT, 0x15).length(2);
 }
 
 impl LongLayout for Cells {
@@ -342,11 +342,15 @@ impl TpRequestToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
@@ -401,13 +405,17 @@ impl TpClearToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -457,13 +465,17 @@ impl TpEndOfMessage {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -512,14 +524,17 @@ impl TpBroadcast {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_broadcast").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
+        .of("tp_broadcast")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x20)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -564,17 +579,19 @@ impl TpAbort {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
-    pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_CONTROLLER: Exchange =
+        TP_OF_CONTROLLER_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -615,11 +632,13 @@ impl TpData {
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values

@@ -234,7 +234,7 @@ impl SetMode {
     /// The value of `delay` that stands for `at_once`, only on `V1_3`.
     pub const DELAY_AT_ONCE: i8 = -2;
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_mode", FRAME.id(Identifier::COMMAND, 0x003)).length(4);
+    pub const SET: Exchange = SET_ACCESS.of("set_mode").id(Identifier::COMMAND, 0x003).length(4);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {

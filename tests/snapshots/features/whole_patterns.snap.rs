@@ -133,7 +133,7 @@ impl Wanted {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(1, 0)).unit("A").limits(0, 200);
     /// The access `demand`, for filters and blank frames of it.
-    pub const DEMAND: Exchange = DEMAND_ACCESS.of("wanted", FRAME.id(Identifier::ID, 0x305));
+    pub const DEMAND: Exchange = DEMAND_ACCESS.of("wanted").id(Identifier::ID, 0x305);
 
     /// Builds the request [`demand`](DEMAND_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -167,7 +167,7 @@ impl Limits {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(1, 0)).unit("V").scale(1, 10);
     /// The access `supply`, for filters and blank frames of it.
-    pub const SUPPLY: Exchange = SUPPLY_ACCESS.of("limits", FRAME.id(Identifier::ID, 0x351));
+    pub const SUPPLY: Exchange = SUPPLY_ACCESS.of("limits").id(Identifier::ID, 0x351);
 }
 
 impl Layout for Limits {
@@ -195,7 +195,7 @@ impl Cycles {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u16> = Signal::new("count", Place::bytes(2, 1));
     /// The access `query`, for filters and blank frames of it.
-    pub const QUERY: Exchange = QUERY_ACCESS.of("cycles", FRAME);
+    pub const QUERY: Exchange = QUERY_ACCESS.of("cycles");
 
     /// Builds the request [`query`](QUERY_ACCESS). Refuses other addressing modes and undocumented
     /// addresses.

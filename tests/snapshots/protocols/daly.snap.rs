@@ -859,7 +859,7 @@ impl PackValues {
     pub const STATE_OF_CHARGE: Signal<u16, f64> =
         Signal::new("state_of_charge", Place::bytes(6, 7)).unit("%").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pack_values", FRAME.id(Identifier::COMMAND, 0x90));
+    pub const READ: Exchange = READ_ACCESS.of("pack_values").id(Identifier::COMMAND, 0x90);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -928,7 +928,7 @@ impl CellVoltageExtremes {
     /// The signal `minimum_cell`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_CELL: Signal<u8> = Signal::new("minimum_cell", Place::byte(5));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("cell_voltage_extremes", FRAME.id(Identifier::COMMAND, 0x91));
+    pub const READ: Exchange = READ_ACCESS.of("cell_voltage_extremes").id(Identifier::COMMAND, 0x91);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1003,7 +1003,7 @@ impl TemperatureExtremes {
     /// The signal `minimum_cell`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_CELL: Signal<u8> = Signal::new("minimum_cell", Place::byte(3));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("temperature_extremes", FRAME.id(Identifier::COMMAND, 0x92));
+    pub const READ: Exchange = READ_ACCESS.of("temperature_extremes").id(Identifier::COMMAND, 0x92);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1079,7 +1079,7 @@ impl ChargeState {
     pub const REMAINING_CAPACITY: Signal<u32, f64> =
         Signal::new("remaining_capacity", Place::bytes(4, 7)).unit("Ah").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("charge_state", FRAME.id(Identifier::COMMAND, 0x93));
+    pub const READ: Exchange = READ_ACCESS.of("charge_state").id(Identifier::COMMAND, 0x93);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1143,7 +1143,7 @@ impl StatusInformation {
     /// The signal `inputs_outputs`, to read or write it alone, or to ask for its limits.
     pub const INPUTS_OUTPUTS: Signal<InputsOutputs> = Signal::new("inputs_outputs", Place::byte(4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("status_information", FRAME.id(Identifier::COMMAND, 0x94));
+    pub const READ: Exchange = READ_ACCESS.of("status_information").id(Identifier::COMMAND, 0x94);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1214,7 +1214,7 @@ impl CellVoltages {
     /// The signal `voltage_3`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE_3: Signal<u16, f64> = Signal::new("voltage_3", Place::bytes(5, 6)).unit("V").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("cell_voltages", FRAME.id(Identifier::COMMAND, 0x95));
+    pub const READ: Exchange = READ_ACCESS.of("cell_voltages").id(Identifier::COMMAND, 0x95);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1293,7 +1293,7 @@ impl Temperatures {
     /// The signal `temperature_7`, to read or write it alone, or to ask for its limits.
     pub const TEMPERATURE_7: Signal<u8, f64> = Signal::new("temperature_7", Place::byte(7)).unit("°C").offset(-40, 1);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("temperatures", FRAME.id(Identifier::COMMAND, 0x96));
+    pub const READ: Exchange = READ_ACCESS.of("temperatures").id(Identifier::COMMAND, 0x96);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1354,7 +1354,7 @@ impl BalanceState {
     /// The signal `balance`, to read or write it alone, or to ask for its limits.
     pub const BALANCE: Signal<Balance> = Signal::new("balance", Place::bytes(5, 0));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("balance_state", FRAME.id(Identifier::COMMAND, 0x97));
+    pub const READ: Exchange = READ_ACCESS.of("balance_state").id(Identifier::COMMAND, 0x97);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1395,7 +1395,7 @@ impl FailureStatus {
     /// The signal `fault_code`, to read or write it alone, or to ask for its limits.
     pub const FAULT_CODE: Signal<u8> = Signal::new("fault_code", Place::byte(7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("failure_status", FRAME.id(Identifier::COMMAND, 0x98));
+    pub const READ: Exchange = READ_ACCESS.of("failure_status").id(Identifier::COMMAND, 0x98);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

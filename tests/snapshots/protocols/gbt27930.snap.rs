@@ -1770,7 +1770,7 @@ impl Chm {
     /// The signal `version_major`, to read or write it alone, or to ask for its limits.
     pub const VERSION_MAJOR: Signal<u16> = Signal::new("version_major", Place::bytes(2, 1));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("chm", FRAME.id(Identifier::FORMAT, 0x26)).length(3);
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("chm").id(Identifier::FORMAT, 0x26).length(3);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -1814,7 +1814,7 @@ impl Bhm {
         .specials(&[(65_535, "not_available")])
         .absent();
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bhm", FRAME.id(Identifier::FORMAT, 0x27)).length(2);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bhm").id(Identifier::FORMAT, 0x27).length(2);
 }
 
 impl Layout for Bhm {
@@ -1864,7 +1864,7 @@ impl Crm {
     /// The signal `area_code`, to read or write it alone, or to ask for its limits.
     pub const AREA_CODE: Signal<Text<3, 0xFF>> = Signal::new("area_code", Place::bytes(5, 7));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("crm", FRAME.id(Identifier::FORMAT, 0x01));
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("crm").id(Identifier::FORMAT, 0x01);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2070,7 +2070,8 @@ impl Brm {
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("brm", FRAME.id(Identifier::FORMAT, 0x02))
+        .of("brm")
+        .id(Identifier::FORMAT, 0x02)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
@@ -2242,7 +2243,8 @@ impl Bcp {
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bcp", FRAME.id(Identifier::FORMAT, 0x06))
+        .of("bcp")
+        .id(Identifier::FORMAT, 0x06)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
@@ -2330,7 +2332,7 @@ impl Cts {
     pub const YEAR: Signal<Bcd<u16>> =
         Signal::new("year", Place::bytes(6, 5)).specials(&[(65_535, "not_available")]).absent();
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cts", FRAME.id(Identifier::FORMAT, 0x07)).length(7);
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cts").id(Identifier::FORMAT, 0x07).length(7);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2426,7 +2428,7 @@ impl Cml {
         .specials(&[(65_535, "not_available")])
         .absent();
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cml", FRAME.id(Identifier::FORMAT, 0x08));
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cml").id(Identifier::FORMAT, 0x08);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2473,7 +2475,8 @@ impl Bro {
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(0));
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bro", FRAME.id(Identifier::FORMAT, 0x09))
+        .of("bro")
+        .id(Identifier::FORMAT, 0x09)
         .length(1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4)));
 }
@@ -2506,7 +2509,8 @@ impl Cro {
     pub const READINESS: Signal<Readiness> = Signal::new("readiness", Place::byte(0));
     /// The access `charger_cycle`, for filters and blank frames of it.
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("cro", FRAME.id(Identifier::FORMAT, 0x0A))
+        .of("cro")
+        .id(Identifier::FORMAT, 0x0A)
         .length(1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x4)));
 
@@ -2568,7 +2572,7 @@ impl Bcl {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<ChargingMode> = Signal::new("mode", Place::byte(4));
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bcl", FRAME.id(Identifier::FORMAT, 0x10)).length(5);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bcl").id(Identifier::FORMAT, 0x10).length(5);
 }
 
 impl Layout for Bcl {
@@ -2675,7 +2679,8 @@ impl Bcs {
     );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bcs", FRAME.id(Identifier::FORMAT, 0x11))
+        .of("bcs")
+        .id(Identifier::FORMAT, 0x11)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
 
@@ -2767,10 +2772,10 @@ impl Ccs {
     /// The signal `byte_8`, to read or write it alone, or to ask for its limits.
     pub const BYTE_8: Signal<Bytes<1>> = Signal::new("byte_8", Place::byte(7));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("ccs", FRAME.id(Identifier::FORMAT, 0x12))
-        .length(7)
-        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00])));
+    pub const CHARGER_CYCLE: Exchange =
+        CHARGER_CYCLE_ACCESS.of("ccs").id(Identifier::FORMAT, 0x12).length(7).with(
+            &Particulars::NOTHING.sending(&Sent::NOTHING.request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00])),
+        );
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -2925,10 +2930,10 @@ impl Bsm {
     /// The signal `permission`, to read or write it alone, or to ask for its limits.
     pub const PERMISSION: Signal<BmsPermission> = Signal::new("permission", Place::byte(6).bits(5, 4));
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bsm", FRAME.id(Identifier::FORMAT, 0x13))
-        .length(7)
-        .with(&Particulars::NOTHING.sending(&Sent::NOTHING.report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00])));
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bsm").id(Identifier::FORMAT, 0x13).length(7).with(
+            &Particulars::NOTHING.sending(&Sent::NOTHING.report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00])),
+        );
 }
 
 impl Layout for Bsm {
@@ -3014,7 +3019,8 @@ impl Bmv {
         LongSignal::new(0, Signal::new("cell_group", Place::byte(1).bits(7, 4))).every(2);
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bmv", FRAME.id(Identifier::FORMAT, 0x15))
+        .of("bmv")
+        .id(Identifier::FORMAT, 0x15)
         .length(2)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
@@ -3177,7 +3183,8 @@ impl Bmt {
     .every(1);
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bmt", FRAME.id(Identifier::FORMAT, 0x16))
+        .of("bmt")
+        .id(Identifier::FORMAT, 0x16)
         .length(1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
@@ -3355,7 +3362,8 @@ impl Bsp {
         LongSignal::new(0, Signal::new("reserved", Place::byte(0))).every(1);
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
-        .of("bsp", FRAME.id(Identifier::FORMAT, 0x17))
+        .of("bsp")
+        .id(Identifier::FORMAT, 0x17)
         .length(1)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 }
@@ -3582,7 +3590,7 @@ impl Bst {
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bst", FRAME.id(Identifier::FORMAT, 0x19)).length(4).with(&Particulars::NOTHING.sending(
+        BMS_CYCLE_ACCESS.of("bst").id(Identifier::FORMAT, 0x19).length(4).with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]),
         ));
 }
@@ -3740,10 +3748,8 @@ impl Cst {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<AbnormalState> = Signal::new("voltage", Place::byte(3).bits(3, 2));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("cst", FRAME.id(Identifier::FORMAT, 0x1A))
-        .length(4)
-        .with(&Particulars::NOTHING.sending(
+    pub const CHARGER_CYCLE: Exchange =
+        CHARGER_CYCLE_ACCESS.of("cst").id(Identifier::FORMAT, 0x1A).length(4).with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x4).request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]),
         ));
 
@@ -3870,7 +3876,7 @@ impl Bsd {
         .specials(&[(255, "not_available")])
         .absent();
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bsd", FRAME.id(Identifier::FORMAT, 0x1C)).length(7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bsd").id(Identifier::FORMAT, 0x1C).length(7);
 }
 
 impl Layout for Bsd {
@@ -3941,7 +3947,7 @@ impl Csd {
     /// The signal `charger_number`, to read or write it alone, or to ask for its limits.
     pub const CHARGER_NUMBER: Signal<u32> = Signal::new("charger_number", Place::bytes(7, 4));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("csd", FRAME.id(Identifier::FORMAT, 0x1D));
+    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("csd").id(Identifier::FORMAT, 0x1D);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4028,7 +4034,7 @@ impl Bem {
     pub const CSD: Signal<TimeoutState> = Signal::new("csd", Place::byte(3).bits(1, 0));
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bem", FRAME.id(Identifier::FORMAT, 0x1E)).length(4).with(&Particulars::NOTHING.sending(
+        BMS_CYCLE_ACCESS.of("bem").id(Identifier::FORMAT, 0x1E).length(4).with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
         ));
 }
@@ -4122,10 +4128,8 @@ impl Cem {
     /// The signal `bsd`, to read or write it alone, or to ask for its limits.
     pub const BSD: Signal<TimeoutState> = Signal::new("bsd", Place::byte(3).bits(1, 0));
     /// The access `charger_cycle`, for filters and blank frames of it.
-    pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS
-        .of("cem", FRAME.id(Identifier::FORMAT, 0x1F))
-        .length(4)
-        .with(&Particulars::NOTHING.sending(
+    pub const CHARGER_CYCLE: Exchange =
+        CHARGER_CYCLE_ACCESS.of("cem").id(Identifier::FORMAT, 0x1F).length(4).with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x2).request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]),
         ));
 
@@ -4210,9 +4214,9 @@ impl Dm1 {
     pub const CODE_CONVERSION: LongSignal<TroubleCodeConversion> =
         LongSignal::new(0, Signal::new("code_conversion", Place::byte(3).bit(7))).every(4);
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm1").id(Identifier::FORMAT, 0x20).length(4);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm1").id(Identifier::FORMAT, 0x20).length(4);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
@@ -4426,9 +4430,9 @@ impl Dm2 {
     pub const CODE_CONVERSION: LongSignal<TroubleCodeConversion> =
         LongSignal::new(0, Signal::new("code_conversion", Place::byte(3).bit(7))).every(4);
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm2").id(Identifier::FORMAT, 0x21).length(4);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm2").id(Identifier::FORMAT, 0x21).length(4);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
@@ -4611,9 +4615,9 @@ impl Dm3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Bytes<2>> = Signal::new("value", Place::bytes(0, 1));
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm3").id(Identifier::FORMAT, 0x22).length(2);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm3").id(Identifier::FORMAT, 0x22).length(2);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4647,9 +4651,9 @@ pub struct Dm4;
 
 impl Dm4 {
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm4").id(Identifier::FORMAT, 0x23).length(0);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm4").id(Identifier::FORMAT, 0x23).length(0);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2). Refuses other addressing modes and
     /// undocumented addresses.
@@ -4668,9 +4672,9 @@ pub struct Dm5;
 
 impl Dm5 {
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS_2.of("dm5").id(Identifier::FORMAT, 0x24).length(0);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm5").id(Identifier::FORMAT, 0x24).length(0);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2). Refuses other addressing modes and
     /// undocumented addresses.
@@ -4700,9 +4704,9 @@ impl Dm6 {
     /// The elements of `data`, to read or write one alone, or to ask for their limits.
     pub const DATA: LongSignal<Bytes<1>> = LongSignal::new(0, Signal::new("data", Place::byte(0))).every(1);
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm6").id(Identifier::FORMAT, 0x25).length(1);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm6").id(Identifier::FORMAT, 0x25).length(1);
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough. Refuses values outside their limits,
@@ -4849,9 +4853,9 @@ impl Rqst {
     /// The signal `pgn`, to read or write it alone, or to ask for its limits.
     pub const PGN: Signal<Pgn> = Signal::new("pgn", Place::bytes(2, 0));
     /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("rqst").id(Identifier::FORMAT, 0xEA).length(3);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("rqst").id(Identifier::FORMAT, 0xEA).length(3);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
     /// their limits, other addressing modes and undocumented addresses.
@@ -4896,11 +4900,13 @@ impl Ackm {
     pub const PGN: Signal<Pgn> = Signal::new("pgn", Place::bytes(7, 5));
     /// The access `charger_event`, for filters and blank frames of it.
     pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS
-        .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
+        .of("ackm")
+        .id(Identifier::FORMAT, 0xE8)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00])));
     /// The access `bms_event`, for filters and blank frames of it.
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS
-        .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
+        .of("ackm")
+        .id(Identifier::FORMAT, 0xE8)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00])));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. Refuses values outside
@@ -4955,11 +4961,15 @@ impl TpRequestToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_request_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x10))
+        .of("tp_request_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x10)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
@@ -5015,13 +5025,17 @@ impl TpClearToSend {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
+        .of("tp_clear_to_send")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x11)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -5071,13 +5085,17 @@ impl TpEndOfMessage {
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
+        .of("tp_end_of_message")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x13)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -5130,14 +5148,17 @@ impl TpBroadcast {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_broadcast").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
+        .of("tp_broadcast")
+        .id(Identifier::FORMAT, 0xEC)
+        .data(CONTROL_SELECTOR.place, 0x20)
         .with(&Particulars::NOTHING.sending(
             &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]),
         ));
@@ -5183,17 +5204,19 @@ impl TpAbort {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u32> = Signal::new("group", Place::bytes(7, 5));
     /// The access `tp_of_module`, for filters and blank frames of it.
-    pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_MODULE: Exchange =
+        TP_OF_MODULE_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
     /// The access `tp_of_controller`, for filters and blank frames of it.
-    pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
-        .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .with(&Particulars::NOTHING.sending(
-            &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
-        ));
+    pub const TP_OF_CONTROLLER: Exchange =
+        TP_OF_CONTROLLER_ACCESS.of("tp_abort").id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF).with(
+            &Particulars::NOTHING.sending(
+                &Sent::NOTHING.id(Identifier::PRIORITY, 0x7).request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]),
+            ),
+        );
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values. Refuses values
     /// outside their limits, other addressing modes and undocumented addresses.
@@ -5234,11 +5257,13 @@ impl TpData {
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS_2
-        .of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB))
+        .of("tp_data")
+        .id(Identifier::FORMAT, 0xEB)
         .with(&Particulars::NOTHING.sending(&Sent::NOTHING.id(Identifier::PRIORITY, 0x7)));
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values. Refuses values

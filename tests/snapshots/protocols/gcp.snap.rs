@@ -1070,7 +1070,7 @@ impl SystemOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The access `read_total`, for filters and blank frames of it.
-    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -1109,7 +1109,7 @@ impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
     /// The access `read_total`, for filters and blank frames of it.
-    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count").id(Identifier::COMMAND, 0x02);
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -1152,7 +1152,7 @@ impl ModuleOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
+    pub const READ: Exchange = READ_ACCESS.of("module_output").id(Identifier::COMMAND, 0x03);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1213,7 +1213,7 @@ impl ModuleStatus {
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("module_status").id(Identifier::COMMAND, 0x04);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1280,7 +1280,7 @@ impl InputVoltage {
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
-        READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06)).with(&Particulars::NOTHING.models(&[
+        READ_ACCESS.of("input_voltage").id(Identifier::COMMAND, 0x06).with(&Particulars::NOTHING.models(&[
             Model::PsM2_3ac1000dc30kw as u8,
             Model::Ps3ac500dc20kw as u8,
             Model::PsM2_3ac500dc20kw as u8,
@@ -1346,7 +1346,8 @@ impl InputVoltageDc {
     pub const MINUS_PE: Signal<u16, f64> = Signal::new("minus_pe", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
-        .of("input_voltage_dc", FRAME.id(Identifier::COMMAND, 0x06))
+        .of("input_voltage_dc")
+        .id(Identifier::COMMAND, 0x06)
         .with(&Particulars::NOTHING.models(&[Model::PsM2_825dc1000dc30kw as u8]));
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1402,7 +1403,7 @@ impl ExternalVoltage {
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage").id(Identifier::COMMAND, 0x0C);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1444,7 +1445,9 @@ impl LimitInputCurrent {
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
-        .of("limit_input_current", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1205))
+        .of("limit_input_current")
+        .id(Identifier::COMMAND, 0x0F)
+        .data(SUB_COMMAND_SELECTOR.place, 0x1205)
         .with(&Particulars::NOTHING.models(&[
             Model::PsM2_3ac1000dc30kw as u8,
             Model::Ps3ac500dc20kw as u8,
@@ -1527,7 +1530,9 @@ impl SetOperatingMode {
     pub const MODE: Signal<OperatingMode> = Signal::new("mode", Place::byte(7));
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
-        .of("set_operating_mode", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1111))
+        .of("set_operating_mode")
+        .id(Identifier::COMMAND, 0x0F)
+        .data(SUB_COMMAND_SELECTOR.place, 0x1111)
         .with(
             &Particulars::NOTHING
                 .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
@@ -1619,7 +1624,7 @@ impl SetWalkIn {
     /// The value of `interval` that stands for `unspecified`.
     pub const INTERVAL_UNSPECIFIED: f64 = 0.0;
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
+    pub const SET: Exchange = SET_ACCESS.of("set_walk_in").id(Identifier::COMMAND, 0x13);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1691,7 +1696,7 @@ impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
+    pub const SET: Exchange = SET_ACCESS.of("set_led").id(Identifier::COMMAND, 0x14);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1734,7 +1739,7 @@ impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules").id(Identifier::COMMAND, 0x1A);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1781,7 +1786,7 @@ impl SetTotalOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The access `set_total`, for filters and blank frames of it.
-    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
+    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output").id(Identifier::COMMAND, 0x1B);
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values. Refuses values outside their
     /// limits, other addressing modes and undocumented addresses.
@@ -1829,7 +1834,7 @@ impl SetModuleOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
+    pub const SET: Exchange = SET_ACCESS.of("set_module_output").id(Identifier::COMMAND, 0x1C);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -1243,7 +1243,8 @@ pub struct MeasuredData {
 impl MeasuredData {
     /// The access `read_all`, for filters and blank frames of it.
     pub const READ_ALL: Exchange = READ_ALL_ACCESS
-        .of("measured_data", FRAME.id(Identifier::COMMAND, 0x40))
+        .of("measured_data")
+        .id(Identifier::COMMAND, 0x40)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS). Refuses other addressing modes and undocumented
@@ -1335,10 +1336,11 @@ impl OperatingHours {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("h");
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("operating_hours", FRAME.data(REGISTER_SELECTOR.place, 0x10E));
+    pub const GET: Exchange = GET_ACCESS.of("operating_hours").data(REGISTER_SELECTOR.place, 0x10E);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("operating_hours", FRAME.data(REGISTER_SELECTOR.place, 0x10E))
+        .of("operating_hours")
+        .data(REGISTER_SELECTOR.place, 0x10E)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1377,10 +1379,11 @@ impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x170));
+    pub const GET: Exchange = GET_ACCESS.of("input_power").data(REGISTER_SELECTOR.place, 0x170);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x170))
+        .of("input_power")
+        .data(REGISTER_SELECTOR.place, 0x170)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1416,10 +1419,11 @@ impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("input_frequency", FRAME.data(REGISTER_SELECTOR.place, 0x171));
+    pub const GET: Exchange = GET_ACCESS.of("input_frequency").data(REGISTER_SELECTOR.place, 0x171);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("input_frequency", FRAME.data(REGISTER_SELECTOR.place, 0x171))
+        .of("input_frequency")
+        .data(REGISTER_SELECTOR.place, 0x171)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1455,10 +1459,11 @@ impl InputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("input_current", FRAME.data(REGISTER_SELECTOR.place, 0x172));
+    pub const GET: Exchange = GET_ACCESS.of("input_current").data(REGISTER_SELECTOR.place, 0x172);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("input_current", FRAME.data(REGISTER_SELECTOR.place, 0x172))
+        .of("input_current")
+        .data(REGISTER_SELECTOR.place, 0x172)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1494,10 +1499,11 @@ impl OutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("output_power", FRAME.data(REGISTER_SELECTOR.place, 0x173));
+    pub const GET: Exchange = GET_ACCESS.of("output_power").data(REGISTER_SELECTOR.place, 0x173);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("output_power", FRAME.data(REGISTER_SELECTOR.place, 0x173))
+        .of("output_power")
+        .data(REGISTER_SELECTOR.place, 0x173)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1533,10 +1539,11 @@ impl Efficiency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("efficiency", FRAME.data(REGISTER_SELECTOR.place, 0x174));
+    pub const GET: Exchange = GET_ACCESS.of("efficiency").data(REGISTER_SELECTOR.place, 0x174);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("efficiency", FRAME.data(REGISTER_SELECTOR.place, 0x174))
+        .of("efficiency")
+        .data(REGISTER_SELECTOR.place, 0x174)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1573,10 +1580,11 @@ impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x175));
+    pub const GET: Exchange = GET_ACCESS.of("output_voltage").data(REGISTER_SELECTOR.place, 0x175);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x175))
+        .of("output_voltage")
+        .data(REGISTER_SELECTOR.place, 0x175)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1645,10 +1653,11 @@ impl MaximumOutputCurrent {
     }
 
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("maximum_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x176));
+    pub const GET: Exchange = GET_ACCESS.of("maximum_output_current").data(REGISTER_SELECTOR.place, 0x176);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("maximum_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x176))
+        .of("maximum_output_current")
+        .data(REGISTER_SELECTOR.place, 0x176)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1700,10 +1709,11 @@ impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x178));
+    pub const GET: Exchange = GET_ACCESS.of("input_voltage").data(REGISTER_SELECTOR.place, 0x178);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x178))
+        .of("input_voltage")
+        .data(REGISTER_SELECTOR.place, 0x178)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1739,10 +1749,11 @@ impl OutputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("output_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x17F));
+    pub const GET: Exchange = GET_ACCESS.of("output_temperature").data(REGISTER_SELECTOR.place, 0x17F);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("output_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x17F))
+        .of("output_temperature")
+        .data(REGISTER_SELECTOR.place, 0x17F)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1783,10 +1794,11 @@ impl InputTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("input_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x180));
+    pub const GET: Exchange = GET_ACCESS.of("input_temperature").data(REGISTER_SELECTOR.place, 0x180);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("input_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x180))
+        .of("input_temperature")
+        .data(REGISTER_SELECTOR.place, 0x180)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1826,10 +1838,11 @@ impl OutputCurrent1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("output_current_1", FRAME.data(REGISTER_SELECTOR.place, 0x181));
+    pub const GET: Exchange = GET_ACCESS.of("output_current_1").data(REGISTER_SELECTOR.place, 0x181);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("output_current_1", FRAME.data(REGISTER_SELECTOR.place, 0x181))
+        .of("output_current_1")
+        .data(REGISTER_SELECTOR.place, 0x181)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1869,10 +1882,11 @@ impl OutputCurrent2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("output_current_2", FRAME.data(REGISTER_SELECTOR.place, 0x182));
+    pub const GET: Exchange = GET_ACCESS.of("output_current_2").data(REGISTER_SELECTOR.place, 0x182);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("output_current_2", FRAME.data(REGISTER_SELECTOR.place, 0x182))
+        .of("output_current_2")
+        .data(REGISTER_SELECTOR.place, 0x182)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1915,10 +1929,11 @@ impl Alarms {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AlarmBits> = Signal::new("value", Place::bytes(2, 7));
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("alarms", FRAME.data(REGISTER_SELECTOR.place, 0x183));
+    pub const GET: Exchange = GET_ACCESS.of("alarms").data(REGISTER_SELECTOR.place, 0x183);
     /// The access `read_all` in the set `measured_data`, for filters and blank frames of it.
     pub const READ_ALL_MEASURED_DATA: Exchange = READ_ALL_MEASURED_DATA_ACCESS
-        .of("alarms", FRAME.data(REGISTER_SELECTOR.place, 0x183))
+        .of("alarms")
+        .data(REGISTER_SELECTOR.place, 0x183)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]));
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
@@ -1964,7 +1979,7 @@ impl FanState {
     /// The signal `speed`, to read or write it alone, or to ask for its limits.
     pub const SPEED: Signal<u16> = Signal::new("speed", Place::bytes(6, 7)).unit("rpm");
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("fan_state", FRAME.data(REGISTER_SELECTOR.place, 0x187));
+    pub const GET: Exchange = GET_ACCESS.of("fan_state").data(REGISTER_SELECTOR.place, 0x187);
 
     /// Builds the request [`get`](GET_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2013,7 +2028,7 @@ pub struct Information {
 
 impl Information {
     /// The access `read_all`, for filters and blank frames of it.
-    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("information", FRAME.id(Identifier::COMMAND, 0x50));
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("information").id(Identifier::COMMAND, 0x50);
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2076,7 +2091,7 @@ impl CharacteristicData {
     pub const VALUE: Signal<Bytes<6>> = Signal::new("value", Place::bytes(2, 7));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("characteristic_data", FRAME.data(REGISTER_SELECTOR.place, 0x001));
+        READ_ALL_INFORMATION_ACCESS.of("characteristic_data").data(REGISTER_SELECTOR.place, 0x001);
 }
 
 impl Layout for CharacteristicData {
@@ -2108,7 +2123,7 @@ impl SerialNumber {
     pub const VALUE: Signal<Bytes<6>> = Signal::new("value", Place::bytes(2, 7));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("serial_number", FRAME.data(REGISTER_SELECTOR.place, 0x002));
+        READ_ALL_INFORMATION_ACCESS.of("serial_number").data(REGISTER_SELECTOR.place, 0x002);
 }
 
 impl Layout for SerialNumber {
@@ -2139,7 +2154,7 @@ impl Barcode1 {
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(2, 7));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("barcode_1", FRAME.data(REGISTER_SELECTOR.place, 0x003));
+        READ_ALL_INFORMATION_ACCESS.of("barcode_1").data(REGISTER_SELECTOR.place, 0x003);
 }
 
 impl Layout for Barcode1 {
@@ -2170,7 +2185,7 @@ impl Barcode2 {
     pub const VALUE: Signal<Text<6>> = Signal::new("value", Place::bytes(2, 7));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("barcode_2", FRAME.data(REGISTER_SELECTOR.place, 0x004));
+        READ_ALL_INFORMATION_ACCESS.of("barcode_2").data(REGISTER_SELECTOR.place, 0x004);
 }
 
 impl Layout for Barcode2 {
@@ -2210,7 +2225,7 @@ impl Versions {
     pub const PFC: Signal<Bytes<2>> = Signal::new("pfc", Place::bytes(6, 7));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("versions", FRAME.data(REGISTER_SELECTOR.place, 0x005));
+        READ_ALL_INFORMATION_ACCESS.of("versions").data(REGISTER_SELECTOR.place, 0x005);
 }
 
 impl Layout for Versions {
@@ -2247,7 +2262,7 @@ impl HardwareAddress {
     pub const VALUE: Signal<Bytes<2>> = Signal::new("value", Place::bytes(2, 3));
     /// The access `read_all` in the set `information`, for filters and blank frames of it.
     pub const READ_ALL_INFORMATION: Exchange =
-        READ_ALL_INFORMATION_ACCESS.of("hardware_address", FRAME.data(REGISTER_SELECTOR.place, 0x006));
+        READ_ALL_INFORMATION_ACCESS.of("hardware_address").data(REGISTER_SELECTOR.place, 0x006);
 }
 
 impl Layout for HardwareAddress {
@@ -2316,7 +2331,7 @@ impl ELabelPart {
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
     /// The access `read_text`, for filters and blank frames of it.
-    pub const READ_TEXT: Exchange = READ_TEXT_ACCESS.of("e_label", FRAME);
+    pub const READ_TEXT: Exchange = READ_TEXT_ACCESS.of("e_label");
 }
 
 impl Layout for ELabelPart {
@@ -2374,7 +2389,7 @@ impl OutputVoltageSetting {
         .limits(41.0, 58.600_585_937_5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(REGISTER_SELECTOR.place, 0x100));
+    pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting").data(REGISTER_SELECTOR.place, 0x100);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2437,7 +2452,7 @@ impl DefaultOutputVoltage {
         .limits(48.0, 58.5)
         .model_limits(DEFAULT_OUTPUT_VOLTAGE_LIMITS);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x101));
+    pub const SET: Exchange = SET_ACCESS.of("default_output_voltage").data(REGISTER_SELECTOR.place, 0x101);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2498,7 +2513,7 @@ impl OvervoltageProtection {
         .limits(56.5, 60.5)
         .model_limits(OVERVOLTAGE_LIMITS);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection", FRAME.data(REGISTER_SELECTOR.place, 0x102));
+    pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection").data(REGISTER_SELECTOR.place, 0x102);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2592,7 +2607,7 @@ impl CurrentLimit {
     }
 
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x103));
+    pub const SET: Exchange = SET_ACCESS.of("current_limit").data(REGISTER_SELECTOR.place, 0x103);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2699,7 +2714,7 @@ impl DefaultCurrentLimit {
     }
 
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("default_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x104));
+    pub const SET: Exchange = SET_ACCESS.of("default_current_limit").data(REGISTER_SELECTOR.place, 0x104);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2772,7 +2787,7 @@ impl InputCurrentLimit {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<i32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("input_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x109));
+    pub const SET: Exchange = SET_ACCESS.of("input_current_limit").data(REGISTER_SELECTOR.place, 0x109);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2822,7 +2837,7 @@ impl FanDuty {
     /// The value of `value` that stands for `auto`.
     pub const VALUE_AUTO: f64 = 0.0;
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("fan_duty", FRAME.data(REGISTER_SELECTOR.place, 0x114));
+    pub const SET: Exchange = SET_ACCESS.of("fan_duty").data(REGISTER_SELECTOR.place, 0x114);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2871,7 +2886,7 @@ impl Standby {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<SwitchState> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("standby", FRAME.data(REGISTER_SELECTOR.place, 0x132));
+    pub const SET: Exchange = SET_ACCESS.of("standby").data(REGISTER_SELECTOR.place, 0x132);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2916,9 +2931,9 @@ impl FanMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FanControl> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
+    pub const SET: Exchange = SET_ACCESS.of("fan_mode").data(REGISTER_SELECTOR.place, 0x134);
     /// The access `get`, for filters and blank frames of it.
-    pub const GET: Exchange = GET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
+    pub const GET: Exchange = GET_ACCESS.of("fan_mode").data(REGISTER_SELECTOR.place, 0x134);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2968,7 +2983,8 @@ impl ReadyState {
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
-        .of("ready_state", FRAME.data(REGISTER_SELECTOR.place, 0x001))
+        .of("ready_state")
+        .data(REGISTER_SELECTOR.place, 0x001)
         .with(&Particulars::NOTHING.answers(&[None, None, Some(Who::One), None, None, None, None]));
 }
 
@@ -3002,7 +3018,8 @@ impl CommonLoad {
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
-        .of("common_load", FRAME.data(REGISTER_SELECTOR.place, 0x002))
+        .of("common_load")
+        .data(REGISTER_SELECTOR.place, 0x002)
         .with(&Particulars::NOTHING.answers(&[None, None, None, Some(Who::One), None, None, None]));
 }
 
@@ -3042,7 +3059,8 @@ impl ActiveState {
     pub const LOAD: Signal<u16, f64> = Signal::new("load", Place::bytes(6, 7)).unit("%").scale(2, 25);
     /// The access `announce`, for filters and blank frames of it.
     pub const ANNOUNCE: Exchange = ANNOUNCE_ACCESS
-        .of("active_state", FRAME.data(REGISTER_SELECTOR.place, 0x003))
+        .of("active_state")
+        .data(REGISTER_SELECTOR.place, 0x003)
         .with(&Particulars::NOTHING.answers(&[None, None, None, None, Some(Who::One), None, None]));
 }
 
@@ -3081,7 +3099,8 @@ impl StartUp10 {
     pub const CONTENT: Signal<Bytes<6>> = Signal::new("content", Place::bytes(2, 7));
     /// The access `start_up`, for filters and blank frames of it.
     pub const START_UP: Exchange = START_UP_ACCESS
-        .of("start_up_10", FRAME.id(Identifier::COMMAND, 0x10))
+        .of("start_up_10")
+        .id(Identifier::COMMAND, 0x10)
         .with(&Particulars::NOTHING.answers(&[None, None, Some(Who::One), None, None, Some(Who::One), None]));
 }
 
@@ -3115,7 +3134,8 @@ impl StartUp81 {
     pub const VALUE: Signal<Bytes<8>> = Signal::new("value", Place::bytes(0, 7));
     /// The access `start_up`, for filters and blank frames of it.
     pub const START_UP: Exchange = START_UP_ACCESS
-        .of("start_up_81", FRAME.id(Identifier::COMMAND, 0x81))
+        .of("start_up_81")
+        .id(Identifier::COMMAND, 0x81)
         .with(&Particulars::NOTHING.answers(&[None, None, None, None, None, None, Some(Who::One)]));
 }
 

@@ -1181,7 +1181,7 @@ impl SystemOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The access `read_total`, for filters and blank frames of it.
-    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output").id(Identifier::COMMAND, 0x01);
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -1217,7 +1217,7 @@ impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
     /// The access `read_total`, for filters and blank frames of it.
-    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count").id(Identifier::COMMAND, 0x02);
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -1258,7 +1258,7 @@ impl ModuleOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
+    pub const READ: Exchange = READ_ACCESS.of("module_output").id(Identifier::COMMAND, 0x03);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1314,7 +1314,7 @@ impl ModuleStatus {
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("module_status").id(Identifier::COMMAND, 0x04);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1368,7 +1368,7 @@ impl InputVoltage {
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage").id(Identifier::COMMAND, 0x06);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1410,7 +1410,7 @@ impl SystemOutputFixed {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The access `read_total`, for filters and blank frames of it.
-    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed", FRAME.id(Identifier::COMMAND, 0x08));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed").id(Identifier::COMMAND, 0x08);
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS). Refuses other addressing modes and
     /// undocumented addresses.
@@ -1453,7 +1453,7 @@ impl ModuleOutputFixed {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_output_fixed", FRAME.id(Identifier::COMMAND, 0x09));
+    pub const READ: Exchange = READ_ACCESS.of("module_output_fixed").id(Identifier::COMMAND, 0x09);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1505,7 +1505,7 @@ impl ModuleLimits {
     /// The signal `rated_power`, to read or write it alone, or to ask for its limits.
     pub const RATED_POWER: Signal<u16, f64> = Signal::new("rated_power", Place::bytes(6, 7)).unit("W").scale(10, 1);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_limits", FRAME.id(Identifier::COMMAND, 0x0A));
+    pub const READ: Exchange = READ_ACCESS.of("module_limits").id(Identifier::COMMAND, 0x0A);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1554,7 +1554,7 @@ impl Barcode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<BarcodeValue> = Signal::new("value", Place::bytes(0, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode", FRAME.id(Identifier::COMMAND, 0x0B));
+    pub const READ: Exchange = READ_ACCESS.of("barcode").id(Identifier::COMMAND, 0x0B);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1606,7 +1606,7 @@ impl ExternalVoltage {
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage").id(Identifier::COMMAND, 0x0C);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1645,7 +1645,7 @@ impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
+    pub const SET: Exchange = SET_ACCESS.of("set_walk_in").id(Identifier::COMMAND, 0x13);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1681,7 +1681,7 @@ impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
+    pub const SET: Exchange = SET_ACCESS.of("set_led").id(Identifier::COMMAND, 0x14);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1724,7 +1724,7 @@ impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(0)).limits(1, 62);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
+    pub const SET: Exchange = SET_ACCESS.of("set_group").id(Identifier::COMMAND, 0x16);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1762,7 +1762,7 @@ impl SetSleep {
     /// The signal `sleep`, to read or write it alone, or to ask for its limits.
     pub const SLEEP: Signal<Sleep> = Signal::new("sleep", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
+    pub const SET: Exchange = SET_ACCESS.of("set_sleep").id(Identifier::COMMAND, 0x19);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1805,7 +1805,8 @@ impl SwitchModules {
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS
-        .of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A))
+        .of("switch_modules")
+        .id(Identifier::COMMAND, 0x1A)
         .with(&Particulars::NOTHING.answers(&[Some(Who::One), Some(Who::Each), Some(Who::Nobody), Some(Who::Nobody)]));
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
@@ -1860,7 +1861,7 @@ impl SetTotalOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The access `set_total`, for filters and blank frames of it.
-    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
+    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output").id(Identifier::COMMAND, 0x1B);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1935,7 +1936,7 @@ impl SetModuleOutput {
         .limits(0.1, 50.0)
         .model_limits(OUTPUT_CURRENT_LIMITS);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
+    pub const SET: Exchange = SET_ACCESS.of("set_module_output").id(Identifier::COMMAND, 0x1C);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1997,7 +1998,7 @@ impl SetAddressMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<AddressMode> = Signal::new("mode", Place::byte(0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));
+    pub const SET: Exchange = SET_ACCESS.of("set_address_mode").id(Identifier::COMMAND, 0x1F);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -1929,10 +1929,10 @@ impl CharacteristicWord {
     /// The signal `generation`, to read or write it alone, or to ask for its limits.
     pub const GENERATION: Signal<u8> = Signal::new("generation", Place::byte(7).bits(4, 2));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
+    pub const READ: Exchange = READ_ACCESS.of("characteristic_word").data(SIGNAL_SELECTOR.place, 0x001);
     /// The access `read_all` in the set `inherent_information`, for filters and blank frames of it.
     pub const READ_ALL_INHERENT_INFORMATION: Exchange =
-        READ_ALL_INHERENT_INFORMATION_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
+        READ_ALL_INHERENT_INFORMATION_ACCESS.of("characteristic_word").data(SIGNAL_SELECTOR.place, 0x001);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2009,10 +2009,10 @@ impl Versions {
     /// The signal `pfc`, to read or write it alone, or to ask for its limits.
     pub const PFC: Signal<u16> = Signal::new("pfc", Place::bytes(6, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
+    pub const READ: Exchange = READ_ACCESS.of("versions").data(SIGNAL_SELECTOR.place, 0x005);
     /// The access `read_all` in the set `inherent_information`, for filters and blank frames of it.
     pub const READ_ALL_INHERENT_INFORMATION: Exchange =
-        READ_ALL_INHERENT_INFORMATION_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
+        READ_ALL_INHERENT_INFORMATION_ACCESS.of("versions").data(SIGNAL_SELECTOR.place, 0x005);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2075,10 +2075,10 @@ impl HardwareAddress {
     /// The value of `slave` that stands for `none`.
     pub const SLAVE_NONE: u8 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
+    pub const READ: Exchange = READ_ACCESS.of("hardware_address").data(SIGNAL_SELECTOR.place, 0x006);
     /// The access `read_all` in the set `inherent_information`, for filters and blank frames of it.
     pub const READ_ALL_INHERENT_INFORMATION: Exchange =
-        READ_ALL_INHERENT_INFORMATION_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
+        READ_ALL_INHERENT_INFORMATION_ACCESS.of("hardware_address").data(SIGNAL_SELECTOR.place, 0x006);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2121,9 +2121,9 @@ impl OutputVoltageSetting {
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x100);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
+    pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x100);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2193,11 +2193,11 @@ impl DefaultOutputVoltage {
         .limits(48.0, 58.0)
         .model_limits(DEFAULT_OUTPUT_VOLTAGE_LIMITS);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
+    pub const READ: Exchange = READ_ACCESS.of("default_output_voltage").data(SIGNAL_SELECTOR.place, 0x101);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
+    pub const SET: Exchange = SET_ACCESS.of("default_output_voltage").data(SIGNAL_SELECTOR.place, 0x101);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
+    pub const STORE: Exchange = STORE_ACCESS.of("default_output_voltage").data(SIGNAL_SELECTOR.place, 0x101);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2272,12 +2272,11 @@ impl OvervoltageProtectionPoint {
         .limits(58.5, 60.5)
         .model_limits(OVERVOLTAGE_POINT_LIMITS);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
+    pub const READ: Exchange = READ_ACCESS.of("overvoltage_protection_point").data(SIGNAL_SELECTOR.place, 0x102);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
+    pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection_point").data(SIGNAL_SELECTOR.place, 0x102);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange =
-        STORE_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
+    pub const STORE: Exchange = STORE_ACCESS.of("overvoltage_protection_point").data(SIGNAL_SELECTOR.place, 0x102);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2352,9 +2351,9 @@ impl CurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
+    pub const READ: Exchange = READ_ACCESS.of("current_limit_setting").data(SIGNAL_SELECTOR.place, 0x103);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
+    pub const SET: Exchange = SET_ACCESS.of("current_limit_setting").data(SIGNAL_SELECTOR.place, 0x103);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2401,11 +2400,11 @@ impl DefaultCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
+    pub const READ: Exchange = READ_ACCESS.of("default_current_limit").data(SIGNAL_SELECTOR.place, 0x104);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
+    pub const SET: Exchange = SET_ACCESS.of("default_current_limit").data(SIGNAL_SELECTOR.place, 0x104);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
+    pub const STORE: Exchange = STORE_ACCESS.of("default_current_limit").data(SIGNAL_SELECTOR.place, 0x104);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2456,11 +2455,11 @@ impl WalkInTime {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
+    pub const READ: Exchange = READ_ACCESS.of("walk_in_time").data(SIGNAL_SELECTOR.place, 0x10C);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
+    pub const SET: Exchange = SET_ACCESS.of("walk_in_time").data(SIGNAL_SELECTOR.place, 0x10C);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
+    pub const STORE: Exchange = STORE_ACCESS.of("walk_in_time").data(SIGNAL_SELECTOR.place, 0x10C);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2512,14 +2511,14 @@ impl TotalRunningTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("h");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
+    pub const READ: Exchange = READ_ACCESS.of("total_running_time").data(SIGNAL_SELECTOR.place, 0x10E);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
+    pub const SET: Exchange = SET_ACCESS.of("total_running_time").data(SIGNAL_SELECTOR.place, 0x10E);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
+    pub const STORE: Exchange = STORE_ACCESS.of("total_running_time").data(SIGNAL_SELECTOR.place, 0x10E);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("total_running_time").data(SIGNAL_SELECTOR.place, 0x10E);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2570,7 +2569,7 @@ impl SwitchModules {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Power> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(SIGNAL_SELECTOR.place, 0x132));
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules").data(SIGNAL_SELECTOR.place, 0x132);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2603,7 +2602,7 @@ impl ResetOvervoltageLockout {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout", FRAME.data(SIGNAL_SELECTOR.place, 0x133));
+    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout").data(SIGNAL_SELECTOR.place, 0x133);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2638,7 +2637,7 @@ impl FlashGreenLight {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Flicker> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("flash_green_light", FRAME.data(SIGNAL_SELECTOR.place, 0x135));
+    pub const SET: Exchange = SET_ACCESS.of("flash_green_light").data(SIGNAL_SELECTOR.place, 0x135);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2676,7 +2675,7 @@ impl AssignAddresses {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Assignment> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("assign_addresses", FRAME.data(SIGNAL_SELECTOR.place, 0x13A));
+    pub const SET: Exchange = SET_ACCESS.of("assign_addresses").data(SIGNAL_SELECTOR.place, 0x13A);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2717,7 +2716,7 @@ impl ControlLights {
     /// The signal `green`, to read or write it alone, or to ask for its limits.
     pub const GREEN: Signal<Light> = Signal::new("green", Place::byte(3).bits(1, 0));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("control_lights", FRAME.data(SIGNAL_SELECTOR.place, 0x140));
+    pub const SET: Exchange = SET_ACCESS.of("control_lights").data(SIGNAL_SELECTOR.place, 0x140);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2762,7 +2761,7 @@ impl ShieldAlarms {
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<Shield> = Signal::new("alarms", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("shield_alarms", FRAME.data(SIGNAL_SELECTOR.place, 0x142));
+    pub const SET: Exchange = SET_ACCESS.of("shield_alarms").data(SIGNAL_SELECTOR.place, 0x142);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2797,9 +2796,9 @@ impl ShieldCommunicationAlarm {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Shielding> = Signal::new("value", Place::byte(3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
+    pub const SET: Exchange = SET_ACCESS.of("shield_communication_alarm").data(SIGNAL_SELECTOR.place, 0x143);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
+    pub const STORE: Exchange = STORE_ACCESS.of("shield_communication_alarm").data(SIGNAL_SELECTOR.place, 0x143);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2841,10 +2840,10 @@ impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
+    pub const READ: Exchange = READ_ACCESS.of("input_power").data(SIGNAL_SELECTOR.place, 0x170);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_power").data(SIGNAL_SELECTOR.place, 0x170);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2878,10 +2877,10 @@ impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
+    pub const READ: Exchange = READ_ACCESS.of("input_frequency").data(SIGNAL_SELECTOR.place, 0x171);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_frequency").data(SIGNAL_SELECTOR.place, 0x171);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2915,10 +2914,10 @@ impl InputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
+    pub const READ: Exchange = READ_ACCESS.of("input_current").data(SIGNAL_SELECTOR.place, 0x172);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_current").data(SIGNAL_SELECTOR.place, 0x172);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2952,10 +2951,10 @@ impl OutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
+    pub const READ: Exchange = READ_ACCESS.of("output_power").data(SIGNAL_SELECTOR.place, 0x173);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_power").data(SIGNAL_SELECTOR.place, 0x173);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -2989,10 +2988,10 @@ impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage").data(SIGNAL_SELECTOR.place, 0x175);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_voltage").data(SIGNAL_SELECTOR.place, 0x175);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3026,10 +3025,10 @@ impl ActualCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
+    pub const READ: Exchange = READ_ACCESS.of("actual_current_limit").data(SIGNAL_SELECTOR.place, 0x176);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("actual_current_limit").data(SIGNAL_SELECTOR.place, 0x176);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3065,7 +3064,7 @@ impl ActualPowerLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("actual_power_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x177));
+    pub const READ: Exchange = READ_ACCESS.of("actual_power_limit").data(SIGNAL_SELECTOR.place, 0x177);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3103,10 +3102,10 @@ impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage").data(SIGNAL_SELECTOR.place, 0x178);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("input_voltage").data(SIGNAL_SELECTOR.place, 0x178);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3144,10 +3143,10 @@ impl AmbientTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
+    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature").data(SIGNAL_SELECTOR.place, 0x180);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("ambient_temperature").data(SIGNAL_SELECTOR.place, 0x180);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3181,10 +3180,10 @@ impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
+    pub const READ: Exchange = READ_ACCESS.of("output_current").data(SIGNAL_SELECTOR.place, 0x182);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("output_current").data(SIGNAL_SELECTOR.place, 0x182);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3224,10 +3223,10 @@ impl ModuleStatus {
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<Alarms> = Signal::new("alarms", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
+    pub const READ: Exchange = READ_ACCESS.of("module_status").data(SIGNAL_SELECTOR.place, 0x183);
     /// The access `read_all` in the set `real_time_data`, for filters and blank frames of it.
     pub const READ_ALL_REAL_TIME_DATA: Exchange =
-        READ_ALL_REAL_TIME_DATA_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
+        READ_ALL_REAL_TIME_DATA_ACCESS.of("module_status").data(SIGNAL_SELECTOR.place, 0x183);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3264,7 +3263,7 @@ impl ExternalVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x184));
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage").data(SIGNAL_SELECTOR.place, 0x184);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3296,7 +3295,7 @@ impl RatedCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(2, 3)).unit("A").scale(1, 100);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(SIGNAL_SELECTOR.place, 0x188));
+    pub const READ: Exchange = READ_ACCESS.of("rated_current").data(SIGNAL_SELECTOR.place, 0x188);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3333,15 +3332,18 @@ impl AddressModeSwitch {
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::byte(3));
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
-        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .of("address_mode_switch")
+        .data(SIGNAL_SELECTOR.place, 0x21D)
         .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS
-        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .of("address_mode_switch")
+        .data(SIGNAL_SELECTOR.place, 0x21D)
         .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
     /// The access `store`, for filters and blank frames of it.
     pub const STORE: Exchange = STORE_ACCESS
-        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .of("address_mode_switch")
+        .data(SIGNAL_SELECTOR.place, 0x21D)
         .with(&Particulars::NOTHING.models(&[Model::V48 as u8]));
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
@@ -3414,11 +3416,11 @@ impl BarcodeVersion {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
+    pub const READ: Exchange = READ_ACCESS.of("barcode_version").data(SIGNAL_SELECTOR.place, 0x222);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
+    pub const SET: Exchange = SET_ACCESS.of("barcode_version").data(SIGNAL_SELECTOR.place, 0x222);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_version").data(SIGNAL_SELECTOR.place, 0x222);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3468,11 +3470,11 @@ impl Barcode1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
+    pub const READ: Exchange = READ_ACCESS.of("barcode_1").data(SIGNAL_SELECTOR.place, 0x223);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
+    pub const SET: Exchange = SET_ACCESS.of("barcode_1").data(SIGNAL_SELECTOR.place, 0x223);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_1").data(SIGNAL_SELECTOR.place, 0x223);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3522,11 +3524,11 @@ impl Barcode2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
+    pub const READ: Exchange = READ_ACCESS.of("barcode_2").data(SIGNAL_SELECTOR.place, 0x224);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
+    pub const SET: Exchange = SET_ACCESS.of("barcode_2").data(SIGNAL_SELECTOR.place, 0x224);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_2").data(SIGNAL_SELECTOR.place, 0x224);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3576,11 +3578,11 @@ impl Barcode3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
+    pub const READ: Exchange = READ_ACCESS.of("barcode_3").data(SIGNAL_SELECTOR.place, 0x225);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
+    pub const SET: Exchange = SET_ACCESS.of("barcode_3").data(SIGNAL_SELECTOR.place, 0x225);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_3").data(SIGNAL_SELECTOR.place, 0x225);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3630,11 +3632,11 @@ impl Barcode4 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
+    pub const READ: Exchange = READ_ACCESS.of("barcode_4").data(SIGNAL_SELECTOR.place, 0x226);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
+    pub const SET: Exchange = SET_ACCESS.of("barcode_4").data(SIGNAL_SELECTOR.place, 0x226);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_4").data(SIGNAL_SELECTOR.place, 0x226);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3680,7 +3682,7 @@ impl FanDutyCycle {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("%").scale(1, 1024);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("fan_duty_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x22B));
+    pub const READ: Exchange = READ_ACCESS.of("fan_duty_cycle").data(SIGNAL_SELECTOR.place, 0x22B);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3715,11 +3717,9 @@ impl RectifierCurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange =
-        READ_ACCESS.of("rectifier_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22D));
+    pub const READ: Exchange = READ_ACCESS.of("rectifier_current_limit_setting").data(SIGNAL_SELECTOR.place, 0x22D);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange =
-        SET_ACCESS.of("rectifier_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22D));
+    pub const SET: Exchange = SET_ACCESS.of("rectifier_current_limit_setting").data(SIGNAL_SELECTOR.place, 0x22D);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3761,9 +3761,9 @@ impl PvCurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
+    pub const READ: Exchange = READ_ACCESS.of("pv_current_limit_setting").data(SIGNAL_SELECTOR.place, 0x22E);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
+    pub const SET: Exchange = SET_ACCESS.of("pv_current_limit_setting").data(SIGNAL_SELECTOR.place, 0x22E);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3814,11 +3814,9 @@ impl RectifierOutputVoltageSetting {
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange =
-        READ_ACCESS.of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
+    pub const READ: Exchange = READ_ACCESS.of("rectifier_output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x22F);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange =
-        SET_ACCESS.of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
+    pub const SET: Exchange = SET_ACCESS.of("rectifier_output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x22F);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -3880,9 +3878,9 @@ impl PvOutputVoltageSetting {
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
+    pub const READ: Exchange = READ_ACCESS.of("pv_output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x230);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
+    pub const SET: Exchange = SET_ACCESS.of("pv_output_voltage_setting").data(SIGNAL_SELECTOR.place, 0x230);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -3940,7 +3938,7 @@ impl PfcAlarmWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x236));
+    pub const READ: Exchange = READ_ACCESS.of("pfc_alarm_word").data(SIGNAL_SELECTOR.place, 0x236);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -3972,7 +3970,7 @@ impl PfcFaultWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x237));
+    pub const READ: Exchange = READ_ACCESS.of("pfc_fault_word").data(SIGNAL_SELECTOR.place, 0x237);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4004,7 +4002,7 @@ impl PfcStatusWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x238));
+    pub const READ: Exchange = READ_ACCESS.of("pfc_status_word").data(SIGNAL_SELECTOR.place, 0x238);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4036,7 +4034,7 @@ impl DcdcAlarmWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("dcdc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x239));
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_alarm_word").data(SIGNAL_SELECTOR.place, 0x239);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4068,7 +4066,7 @@ impl DcdcFaultWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("dcdc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23A));
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_fault_word").data(SIGNAL_SELECTOR.place, 0x23A);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4100,7 +4098,7 @@ impl DcdcStatusWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("dcdc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23B));
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_status_word").data(SIGNAL_SELECTOR.place, 0x23B);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4139,9 +4137,9 @@ impl AutoBootSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AutoBoot> = Signal::new("value", Place::bytes(2, 3));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
+    pub const SET: Exchange = SET_ACCESS.of("auto_boot_setting").data(SIGNAL_SELECTOR.place, 0x24E);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
+    pub const STORE: Exchange = STORE_ACCESS.of("auto_boot_setting").data(SIGNAL_SELECTOR.place, 0x24E);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -4185,9 +4183,9 @@ impl PvVoltageSetting {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
+    pub const READ: Exchange = READ_ACCESS.of("pv_voltage_setting").data(SIGNAL_SELECTOR.place, 0x270);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
+    pub const SET: Exchange = SET_ACCESS.of("pv_voltage_setting").data(SIGNAL_SELECTOR.place, 0x270);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4225,7 +4223,7 @@ pub struct Reserved271;
 
 impl Reserved271 {
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("reserved_271", FRAME.data(SIGNAL_SELECTOR.place, 0x271));
+    pub const READ: Exchange = READ_ACCESS.of("reserved_271").data(SIGNAL_SELECTOR.place, 0x271);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4245,7 +4243,7 @@ pub struct Reserved272;
 
 impl Reserved272 {
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("reserved_272", FRAME.data(SIGNAL_SELECTOR.place, 0x272));
+    pub const READ: Exchange = READ_ACCESS.of("reserved_272").data(SIGNAL_SELECTOR.place, 0x272);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4267,9 +4265,9 @@ impl MpptSingleScan {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Scan> = Signal::new("value", Place::byte(3));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
+    pub const READ: Exchange = READ_ACCESS.of("mppt_single_scan").data(SIGNAL_SELECTOR.place, 0x273);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
+    pub const SET: Exchange = SET_ACCESS.of("mppt_single_scan").data(SIGNAL_SELECTOR.place, 0x273);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4313,11 +4311,11 @@ impl MpptScanCycle {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
+    pub const READ: Exchange = READ_ACCESS.of("mppt_scan_cycle").data(SIGNAL_SELECTOR.place, 0x274);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
+    pub const SET: Exchange = SET_ACCESS.of("mppt_scan_cycle").data(SIGNAL_SELECTOR.place, 0x274);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
+    pub const STORE: Exchange = STORE_ACCESS.of("mppt_scan_cycle").data(SIGNAL_SELECTOR.place, 0x274);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4367,9 +4365,9 @@ impl WindVoltageSetting {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_setting").data(SIGNAL_SELECTOR.place, 0x275);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_setting").data(SIGNAL_SELECTOR.place, 0x275);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4412,9 +4410,9 @@ impl WindVoltageUpperLimit {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_upper_limit").data(SIGNAL_SELECTOR.place, 0x276);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_upper_limit").data(SIGNAL_SELECTOR.place, 0x276);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4457,9 +4455,9 @@ impl WindVoltageLowerLimit {
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_lower_limit").data(SIGNAL_SELECTOR.place, 0x277);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_lower_limit").data(SIGNAL_SELECTOR.place, 0x277);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4502,11 +4500,11 @@ impl CustomerInformation1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_1").data(SIGNAL_SELECTOR.place, 0x301);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_1").data(SIGNAL_SELECTOR.place, 0x301);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_1").data(SIGNAL_SELECTOR.place, 0x301);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4556,11 +4554,11 @@ impl CustomerInformation2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_2").data(SIGNAL_SELECTOR.place, 0x302);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_2").data(SIGNAL_SELECTOR.place, 0x302);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_2").data(SIGNAL_SELECTOR.place, 0x302);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4610,11 +4608,11 @@ impl CustomerInformation3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_3").data(SIGNAL_SELECTOR.place, 0x303);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_3").data(SIGNAL_SELECTOR.place, 0x303);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_3").data(SIGNAL_SELECTOR.place, 0x303);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4664,11 +4662,11 @@ impl CustomerInformation4 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_4").data(SIGNAL_SELECTOR.place, 0x304);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_4").data(SIGNAL_SELECTOR.place, 0x304);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_4").data(SIGNAL_SELECTOR.place, 0x304);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4718,11 +4716,11 @@ impl CustomerInformation5 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_5").data(SIGNAL_SELECTOR.place, 0x305);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_5").data(SIGNAL_SELECTOR.place, 0x305);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_5").data(SIGNAL_SELECTOR.place, 0x305);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4772,11 +4770,11 @@ impl CustomerInformation6 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_6").data(SIGNAL_SELECTOR.place, 0x306);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_6").data(SIGNAL_SELECTOR.place, 0x306);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_6").data(SIGNAL_SELECTOR.place, 0x306);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4826,11 +4824,11 @@ impl CustomerInformation7 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_7").data(SIGNAL_SELECTOR.place, 0x307);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_7").data(SIGNAL_SELECTOR.place, 0x307);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_7").data(SIGNAL_SELECTOR.place, 0x307);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4880,11 +4878,11 @@ impl CustomerInformation8 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_8").data(SIGNAL_SELECTOR.place, 0x308);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_8").data(SIGNAL_SELECTOR.place, 0x308);
     /// The access `store`, for filters and blank frames of it.
-    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_8").data(SIGNAL_SELECTOR.place, 0x308);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -4944,7 +4942,7 @@ pub struct InherentInformation {
 
 impl InherentInformation {
     /// The access `read_all`, for filters and blank frames of it.
-    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("inherent_information", FRAME.id(Identifier::COMMAND, 0x50));
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("inherent_information").id(Identifier::COMMAND, 0x50);
 
     /// Builds the requests [`read_all`](READ_ALL_ACCESS), one for each member in the order in which they
     /// are sent. Refuses other addressing modes and undocumented addresses.
@@ -5028,7 +5026,7 @@ pub struct RealTimeData {
 
 impl RealTimeData {
     /// The access `read_all`, for filters and blank frames of it.
-    pub const READ_ALL: Exchange = READ_ALL_ACCESS_2.of("real_time_data", FRAME.id(Identifier::COMMAND, 0x40));
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS_2.of("real_time_data").id(Identifier::COMMAND, 0x40);
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.

@@ -1086,7 +1086,7 @@ impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage").data(REGISTER_SELECTOR.place, 0x0001);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1118,7 +1118,7 @@ impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(REGISTER_SELECTOR.place, 0x0002));
+    pub const READ: Exchange = READ_ACCESS.of("output_current").data(REGISTER_SELECTOR.place, 0x0002);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1155,7 +1155,7 @@ impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0003));
+    pub const READ: Exchange = READ_ACCESS.of("current_limit").data(REGISTER_SELECTOR.place, 0x0003);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1191,7 +1191,7 @@ impl DcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("dc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0004));
+    pub const READ: Exchange = READ_ACCESS.of("dc_board_temperature").data(REGISTER_SELECTOR.place, 0x0004);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1226,7 +1226,7 @@ impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0005));
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage").data(REGISTER_SELECTOR.place, 0x0005);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1258,7 +1258,7 @@ impl Pfc0Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc0_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0008));
+    pub const READ: Exchange = READ_ACCESS.of("pfc0_voltage").data(REGISTER_SELECTOR.place, 0x0008);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1290,7 +1290,7 @@ impl Pfc1Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc1_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000A));
+    pub const READ: Exchange = READ_ACCESS.of("pfc1_voltage").data(REGISTER_SELECTOR.place, 0x000A);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1326,7 +1326,7 @@ impl AmbientTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x000B));
+    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature").data(REGISTER_SELECTOR.place, 0x000B);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1358,7 +1358,7 @@ impl PhaseAVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("phase_a_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000C));
+    pub const READ: Exchange = READ_ACCESS.of("phase_a_voltage").data(REGISTER_SELECTOR.place, 0x000C);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1390,7 +1390,7 @@ impl PhaseBVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("phase_b_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000D));
+    pub const READ: Exchange = READ_ACCESS.of("phase_b_voltage").data(REGISTER_SELECTOR.place, 0x000D);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1422,7 +1422,7 @@ impl PhaseCVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("phase_c_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000E));
+    pub const READ: Exchange = READ_ACCESS.of("phase_c_voltage").data(REGISTER_SELECTOR.place, 0x000E);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1458,7 +1458,7 @@ impl PfcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("pfc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0010));
+    pub const READ: Exchange = READ_ACCESS.of("pfc_board_temperature").data(REGISTER_SELECTOR.place, 0x0010);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1490,7 +1490,7 @@ impl RatedPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("rated_power", FRAME.data(REGISTER_SELECTOR.place, 0x0011));
+    pub const READ: Exchange = READ_ACCESS.of("rated_power").data(REGISTER_SELECTOR.place, 0x0011);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1522,7 +1522,7 @@ impl RatedCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(REGISTER_SELECTOR.place, 0x0012));
+    pub const READ: Exchange = READ_ACCESS.of("rated_current").data(REGISTER_SELECTOR.place, 0x0012);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]
@@ -1567,7 +1567,7 @@ impl SetAltitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m").limits(1000, 5000);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_altitude", FRAME.data(REGISTER_SELECTOR.place, 0x0017));
+    pub const SET: Exchange = SET_ACCESS.of("set_altitude").data(REGISTER_SELECTOR.place, 0x0017);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1605,7 +1605,7 @@ impl SetOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x001B));
+    pub const SET: Exchange = SET_ACCESS.of("set_output_current").data(REGISTER_SELECTOR.place, 0x001B);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1656,7 +1656,7 @@ impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(7).bits(5, 0)).limits(0, 60);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.data(REGISTER_SELECTOR.place, 0x001E));
+    pub const SET: Exchange = SET_ACCESS.of("set_group").data(REGISTER_SELECTOR.place, 0x001E);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1698,7 +1698,7 @@ impl SetAddressMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.data(REGISTER_SELECTOR.place, 0x001F));
+    pub const SET: Exchange = SET_ACCESS.of("set_address_mode").data(REGISTER_SELECTOR.place, 0x001F);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1732,7 +1732,7 @@ impl SetOutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32, f64> = Signal::new("value", Place::bytes(4, 7)).limits(0.1, 1.0);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS_2.of("set_output_power", FRAME.data(REGISTER_SELECTOR.place, 0x0020));
+    pub const SET: Exchange = SET_ACCESS_2.of("set_output_power").data(REGISTER_SELECTOR.place, 0x0020);
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -1771,7 +1771,7 @@ impl SetOutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
+    pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage").data(REGISTER_SELECTOR.place, 0x0021);
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -1819,7 +1819,7 @@ impl SetCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0022));
+    pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit").data(REGISTER_SELECTOR.place, 0x0022);
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -1856,7 +1856,7 @@ impl SetOvervoltagePoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point", FRAME.data(REGISTER_SELECTOR.place, 0x0023));
+    pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point").data(REGISTER_SELECTOR.place, 0x0023);
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.
@@ -1895,7 +1895,7 @@ impl SwitchModules {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Power> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(REGISTER_SELECTOR.place, 0x0030));
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules").data(REGISTER_SELECTOR.place, 0x0030);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1929,7 +1929,7 @@ impl ResetOvervoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage", FRAME.data(REGISTER_SELECTOR.place, 0x0031));
+    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage").data(REGISTER_SELECTOR.place, 0x0031);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -1963,7 +1963,7 @@ impl SetOvervoltageRelevance {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Relevance> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance", FRAME.data(REGISTER_SELECTOR.place, 0x003E));
+    pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance").data(REGISTER_SELECTOR.place, 0x003E);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2002,7 +2002,7 @@ impl ModuleStatus {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Alarms> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("module_status", FRAME.data(REGISTER_SELECTOR.place, 0x0040));
+    pub const READ: Exchange = READ_ACCESS_2.of("module_status").data(REGISTER_SELECTOR.place, 0x0040);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2042,7 +2042,7 @@ impl GroupAndAddress {
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u16> = Signal::new("address", Place::bytes(6, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("group_and_address", FRAME.data(REGISTER_SELECTOR.place, 0x0043));
+    pub const READ: Exchange = READ_ACCESS_2.of("group_and_address").data(REGISTER_SELECTOR.place, 0x0043);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2077,7 +2077,7 @@ impl ResetShortCircuit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit", FRAME.data(REGISTER_SELECTOR.place, 0x0044));
+    pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit").data(REGISTER_SELECTOR.place, 0x0044);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2111,7 +2111,7 @@ impl SetInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<InputMode> = Signal::new("value", Place::bytes(4, 7));
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x0046));
+    pub const SET: Exchange = SET_ACCESS.of("set_input_mode").data(REGISTER_SELECTOR.place, 0x0046);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.
@@ -2144,7 +2144,7 @@ impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x0048));
+    pub const READ: Exchange = READ_ACCESS_2.of("input_power").data(REGISTER_SELECTOR.place, 0x0048);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2179,7 +2179,7 @@ impl Altitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("altitude", FRAME.data(REGISTER_SELECTOR.place, 0x004A));
+    pub const READ: Exchange = READ_ACCESS_2.of("altitude").data(REGISTER_SELECTOR.place, 0x004A);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2212,7 +2212,7 @@ impl ActiveInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<ActiveInput> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("active_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x004B));
+    pub const READ: Exchange = READ_ACCESS_2.of("active_input_mode").data(REGISTER_SELECTOR.place, 0x004B);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2249,7 +2249,7 @@ impl SerialNumberLow {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_low", FRAME.data(REGISTER_SELECTOR.place, 0x0054));
+    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_low").data(REGISTER_SELECTOR.place, 0x0054);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2286,7 +2286,7 @@ impl SerialNumberHigh {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_high", FRAME.data(REGISTER_SELECTOR.place, 0x0055));
+    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_high").data(REGISTER_SELECTOR.place, 0x0055);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2323,7 +2323,7 @@ impl DcdcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("dcdc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
+    pub const READ: Exchange = READ_ACCESS_2.of("dcdc_version").data(REGISTER_SELECTOR.place, 0x0056);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.
@@ -2360,7 +2360,7 @@ impl PfcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS_2.of("pfc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0057));
+    pub const READ: Exchange = READ_ACCESS_2.of("pfc_version").data(REGISTER_SELECTOR.place, 0x0057);
 
     /// Builds the request [`read`](READ_ACCESS_2). Refuses other addressing modes and undocumented
     /// addresses.

@@ -901,7 +901,7 @@ impl MeasurementA {
     /// The signal `counter`, to read or write it alone, or to ask for its limits.
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(7));
     /// The access `report_a`, for filters and blank frames of it.
-    pub const REPORT_A: Exchange = REPORT_A_ACCESS.of("measurement_a", FRAME);
+    pub const REPORT_A: Exchange = REPORT_A_ACCESS.of("measurement_a");
 }
 
 impl Layout for MeasurementA {
@@ -956,7 +956,7 @@ impl MeasurementB {
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u8, f64> = Signal::new("load", Place::byte(5)).unit("%").scale(1, 2);
     /// The access `report_b`, for filters and blank frames of it.
-    pub const REPORT_B: Exchange = REPORT_B_ACCESS.of("measurement_b", FRAME).length(6);
+    pub const REPORT_B: Exchange = REPORT_B_ACCESS.of("measurement_b").length(6);
 }
 
 impl Layout for MeasurementB {
@@ -994,7 +994,7 @@ impl VoltageSetPoint {
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 100).limits(42.0, 58.0);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).with(
+    pub const READ: Exchange = READ_ACCESS.of("voltage_set_point").data(INDEX_SELECTOR.place, 0x2100).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1004,7 +1004,7 @@ impl VoltageSetPoint {
         ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_set_point").data(INDEX_SELECTOR.place, 0x2100).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1053,7 +1053,7 @@ impl CurrentLimit {
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 10).limits(0.0, 125.0);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).with(
+    pub const READ: Exchange = READ_ACCESS.of("current_limit").data(INDEX_SELECTOR.place, 0x2101).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1063,7 +1063,7 @@ impl CurrentLimit {
         ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("current_limit").data(INDEX_SELECTOR.place, 0x2101).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1111,7 +1111,7 @@ impl OutputSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<OutputCommand> = Signal::new("value", Place::bytes(7, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).with(
+    pub const READ: Exchange = READ_ACCESS.of("output_switch").data(INDEX_SELECTOR.place, 0x2102).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1121,7 +1121,7 @@ impl OutputSwitch {
         ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("output_switch").data(INDEX_SELECTOR.place, 0x2102).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1172,7 +1172,7 @@ impl MinimumFanSpeed {
     /// The value of `value` that stands for `automatic`.
     pub const VALUE_AUTOMATIC: u32 = 255;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).with(
+    pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed").data(INDEX_SELECTOR.place, 0x2103).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1182,7 +1182,7 @@ impl MinimumFanSpeed {
         ),
     );
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).with(
+    pub const WRITE: Exchange = WRITE_ACCESS.of("minimum_fan_speed").data(INDEX_SELECTOR.place, 0x2103).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1229,7 +1229,7 @@ impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200)).with(
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage").data(INDEX_SELECTOR.place, 0x2200).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1269,7 +1269,7 @@ impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201)).with(
+    pub const READ: Exchange = READ_ACCESS.of("output_current").data(INDEX_SELECTOR.place, 0x2201).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1317,7 +1317,7 @@ impl HeatSinkTemperature {
     /// The value of `value` that stands for `sensor_broken`.
     pub const VALUE_SENSOR_BROKEN: f64 = 87.5;
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("heat_sink_temperature", FRAME.data(INDEX_SELECTOR.place, 0x2202)).with(
+    pub const READ: Exchange = READ_ACCESS.of("heat_sink_temperature").data(INDEX_SELECTOR.place, 0x2202).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1357,7 +1357,7 @@ impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(7, 4)).unit("Hz");
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203)).with(
+    pub const READ: Exchange = READ_ACCESS.of("input_frequency").data(INDEX_SELECTOR.place, 0x2203).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1397,7 +1397,7 @@ impl OperatingTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204)).with(
+    pub const READ: Exchange = READ_ACCESS.of("operating_time").data(INDEX_SELECTOR.place, 0x2204).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1437,7 +1437,7 @@ impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300)).with(
+    pub const READ: Exchange = READ_ACCESS.of("serial_number").data(INDEX_SELECTOR.place, 0x2300).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1477,7 +1477,7 @@ impl Firmware {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FirmwareValue> = Signal::new("value", Place::bytes(4, 6));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301)).with(
+    pub const READ: Exchange = READ_ACCESS.of("firmware").data(INDEX_SELECTOR.place, 0x2301).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1517,7 +1517,7 @@ impl State {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Conditions> = Signal::new("value", Place::bytes(7, 4));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400)).with(
+    pub const READ: Exchange = READ_ACCESS.of("state").data(INDEX_SELECTOR.place, 0x2400).with(
         &Particulars::NOTHING.refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1557,7 +1557,7 @@ impl Refusal {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<RefusalReason> = Signal::new("value", Place::bytes(7, 4));
     /// The access `refuse`, for filters and blank frames of it.
-    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
+    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal");
 }
 
 impl Layout for Refusal {
@@ -1585,7 +1585,7 @@ impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new("outputs", Place::byte(1).bit(0));
     /// The access `tell`, for filters and blank frames of it.
-    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
+    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive").data(SIGN_SELECTOR.place, 0x55).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.

@@ -624,7 +624,7 @@ impl ReferenceValues {
     pub const MINIMUM_VOLTAGE: Signal<u16, f64> =
         Signal::new("minimum_voltage", Place::bytes(6, 7)).unit("V").scale(1, 10);
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("reference_values", FRAME.id(Identifier::COMMAND, 0x20));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("reference_values").id(Identifier::COMMAND, 0x20);
 }
 
 impl Layout for ReferenceValues {
@@ -679,7 +679,7 @@ impl OutputValues {
     /// The signal `status`, to read or write it alone, or to ask for its limits.
     pub const STATUS: Signal<Status> = Signal::new("status", Place::bytes(6, 7));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("output_values", FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("output_values").id(Identifier::COMMAND, 0x21);
 }
 
 impl Layout for OutputValues {
@@ -730,7 +730,7 @@ impl TemperatureValues {
     /// The signal `fan_2`, to read or write it alone, or to ask for its limits.
     pub const FAN_2: Signal<u16> = Signal::new("fan_2", Place::bytes(4, 5)).unit("rpm");
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("temperature_values", FRAME.id(Identifier::COMMAND, 0x22));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("temperature_values").id(Identifier::COMMAND, 0x22);
 }
 
 impl Layout for TemperatureValues {
@@ -767,7 +767,7 @@ impl FirmwareVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<Text<6>> = Signal::new("version", Place::bytes(0, 5));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("firmware_version", FRAME.id(Identifier::COMMAND, 0x23));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("firmware_version").id(Identifier::COMMAND, 0x23);
 }
 
 impl Layout for FirmwareVersion {
@@ -801,7 +801,7 @@ impl RunningTime {
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u32> = Signal::new("total", Place::bytes(4, 7)).unit("min");
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("running_time", FRAME.id(Identifier::COMMAND, 0x25));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("running_time").id(Identifier::COMMAND, 0x25);
 }
 
 impl Layout for RunningTime {
@@ -835,7 +835,7 @@ impl ReplacementAdvice {
     /// The signal `advice`, to read or write it alone, or to ask for its limits.
     pub const ADVICE: Signal<Advice> = Signal::new("advice", Place::byte(0));
     /// The access `report`, for filters and blank frames of it.
-    pub const REPORT: Exchange = REPORT_ACCESS.of("replacement_advice", FRAME.id(Identifier::COMMAND, 0x27));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("replacement_advice").id(Identifier::COMMAND, 0x27);
 }
 
 impl Layout for ReplacementAdvice {
@@ -896,7 +896,7 @@ impl Control {
         .limits(18.5, 59.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
+    pub const SET: Exchange = SET_ACCESS.of("control").id(Identifier::COMMAND, 0x10);
 
     /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -959,7 +959,7 @@ impl SetAddress {
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0)).limits(224, 239);
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));
+    pub const SET: Exchange = SET_ACCESS.of("set_address").id(Identifier::COMMAND, 0x11);
 
     /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
     /// addressing modes and undocumented addresses.

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::filter::filter;
+use super::filter::{filter, required};
 use super::plan::exchange::{Access, Exchange, SharedFrame};
 use crate::model::Who;
 
@@ -29,12 +29,12 @@ pub fn access(access: &Access) -> TokenStream {
 /// Emits how a message travels by one of its accesses.
 pub fn exchange(exchange: &Exchange) -> TokenStream {
     let Exchange { constant, comment, shared, message, length, .. } = exchange;
-    let own = filter(&exchange.filter);
+    let required = required(&exchange.required);
     let length = length.iter().map(|length| quote!(.length(#length)));
     let particulars = particulars(exchange).map(|particulars| quote!(.with(&#particulars)));
     quote! {
         #comment
-        pub const #constant: Exchange = #shared.of(#message, #own) #(#length)* #particulars;
+        pub const #constant: Exchange = #shared.of(#message) #required #(#length)* #particulars;
     }
 }
 

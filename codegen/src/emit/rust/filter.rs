@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::plan::identifier::Base;
-use super::plan::selector::{Filter, InData, Source};
+use super::plan::selector::{Filter, InData, Required, Source};
 
 /// Emits what every frame shows.
 pub fn base(Base { extended, bits, constants, sent, .. }: &Base) -> TokenStream {
@@ -43,14 +43,20 @@ pub fn continuation((source, raw): &(Source, TokenStream)) -> TokenStream {
 }
 
 /// Emits a filter.
-pub fn filter(Filter { selectors, constants }: &Filter) -> TokenStream {
-    let constants = constants.iter().map(|(source, value, open)| match source {
+pub fn filter(Filter { selectors, required }: &Filter) -> TokenStream {
+    let selectors = (!selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
+    let required = self::required(required);
+    quote!(FRAME #selectors #required)
+}
+
+/// Emits the calls by which a filter or an exchange requires values.
+pub fn required(required: &[Required]) -> TokenStream {
+    let calls = required.iter().map(|Required { source, value, open }| match source {
         Source::Identifier(place) => quote!(.id(Identifier::#place, #value)),
         Source::Data(selector) => {
             let open = open.iter();
             quote!(.data(#selector.place, #value) #(.open(#selector.place, #open))*)
         }
     });
-    let selectors = (!selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
-    quote!(FRAME #selectors #(#constants)*)
+    calls.collect()
 }

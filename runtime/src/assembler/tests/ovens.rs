@@ -38,11 +38,11 @@ const fn of_members(name: &'static str) -> Access {
 
 /// Returns how a member travels, alone or as part of a set.
 const fn member(access: &'static Access, name: &'static str, command: u32, signal: u64) -> Exchange {
-    access.of(name, Filter::STANDARD.id(COMMAND, command).data(SIGNAL.place, signal)).length(4)
+    access.of(name).id(COMMAND, command).data(SIGNAL.place, signal).length(4)
 }
 
 const fn whole(name: &'static str, command: u32) -> Exchange {
-    SCAN.of(name, Filter::STANDARD.id(COMMAND, command)).length(4)
+    SCAN.of(name).id(COMMAND, command).length(4)
 }
 
 static ALL: Exchange = whole("all", 5);

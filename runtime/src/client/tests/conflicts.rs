@@ -22,7 +22,8 @@ static SET_BY_ONE: Exchange = Access::new("set by one", &[Some(Who::One), Some(W
     .with_values()
     .request(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
     .reply(&FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 2))
-    .of("heat", FRAME.id(COMMAND, 7))
+    .of("heat")
+    .id(COMMAND, 7)
     .length(4);
 
 fn power(route: impl Into<Route<To>>, power_w: f64) -> Request<Message, Heat> {

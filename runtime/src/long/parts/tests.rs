@@ -26,8 +26,8 @@ const MODE: Mode = Mode {
 };
 
 const READ: Access = Access::new("read", &[Some(Who::One)]).request(&Filter::STANDARD).reply(&Filter::STANDARD);
-const STATE: Exchange = READ.of("state", Filter::STANDARD.id(COMMAND, 1));
-const CELLS: Exchange = READ.of("cells", Filter::STANDARD.id(COMMAND, 2));
+const STATE: Exchange = READ.of("state").id(COMMAND, 1);
+const CELLS: Exchange = READ.of("cells").id(COMMAND, 2);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Message {

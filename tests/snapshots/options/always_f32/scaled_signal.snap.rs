@@ -207,7 +207,7 @@ impl SetOutput {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<i16, f32> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(10, 1);
     /// The access `write`, for filters and blank frames of it.
-    pub const WRITE: Exchange = WRITE_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x0012));
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_output").id(Identifier::COMMAND, 0x0012);
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
     /// other addressing modes and undocumented addresses.

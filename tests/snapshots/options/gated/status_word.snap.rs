@@ -268,7 +268,7 @@ impl Status {
     /// The signal `green`, to read or write it alone, or to ask for its limits.
     pub const GREEN: Signal<u8> = Signal::new("green", Place::byte(5).bits(1, 0));
     /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("status", FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("status").id(Identifier::COMMAND, 0x04);
 
     /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
     #[inline(always)]

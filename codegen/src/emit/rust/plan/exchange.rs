@@ -9,7 +9,7 @@ use super::doc::{self, Comment};
 use super::literal::{data, decimal, hexadecimal};
 use super::models::Models;
 use super::naming::{Pool, ident, screaming};
-use super::selector::{Filter, Selectors};
+use super::selector::{Filter, Required, Selectors, required};
 use crate::model::{
     AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Set, Side, Table, Who,
 };
@@ -62,8 +62,8 @@ pub struct Exchange {
     pub shared: Ident,
     /// The message's name in the spec.
     pub message: String,
-    /// What its frames show.
-    pub filter: Filter,
+    /// What its frames show beside what the access says.
+    pub required: Vec<Required>,
     /// Who answers, if not as the access says.
     pub answers: Option<Vec<Option<Who>>>,
     /// Data bytes of its frames, if not eight.
@@ -275,7 +275,7 @@ impl Exchange {
             comment: Comment::line(format!("The access `{}`{set}, for filters and blank frames of it.", known.name)),
             shared: shared.clone(),
             message: message.name.clone(),
-            filter: Filter::new(selectors, &[], &message.constants),
+            required: required(selectors, &message.constants),
             answers: (exchange.answers != known.answers).then(|| exchange.answers.to_vec()),
             length: (message.shortest() != 8).then(|| decimal(message.shortest())),
             models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),

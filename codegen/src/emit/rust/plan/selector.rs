@@ -107,8 +107,8 @@ impl InData {
 pub struct Filter {
     /// The constants of the selectors that they have in the data.
     pub selectors: Vec<Ident>,
-    /// What they show, its value, and the bits that do not count, if there are any.
-    pub constants: Vec<(Source, TokenStream, Option<TokenStream>)>,
+    /// What they show.
+    pub required: Vec<Required>,
 }
 
 impl Filter {
@@ -118,11 +118,26 @@ impl Filter {
             Source::Data(constant) => Some(constant.clone()),
             Source::Identifier(_) => None,
         });
-        let constants = constants.iter().map(|constant| {
-            let selector = &known[constant.selector];
-            let open = (constant.open != 0).then(|| selector.value(constant.open));
-            (selector.source.clone(), selector.value(constant.value), open)
-        });
-        Self { selectors: in_data.collect(), constants: constants.collect() }
+        Self { selectors: in_data.collect(), required: required(known, constants) }
     }
+}
+
+/// A value that frames show in a selector.
+pub struct Required {
+    /// What is read.
+    pub source: Source,
+    /// The value.
+    pub value: TokenStream,
+    /// The bits that do not count, if there are any.
+    pub open: Option<TokenStream>,
+}
+
+/// Returns what constants require.
+pub fn required(known: &Selectors, constants: &[Constant]) -> Vec<Required> {
+    let required = constants.iter().map(|constant| {
+        let selector = &known[constant.selector];
+        let open = (constant.open != 0).then(|| selector.value(constant.open));
+        Required { source: selector.source.clone(), value: selector.value(constant.value), open }
+    });
+    required.collect()
 }
