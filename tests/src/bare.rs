@@ -99,6 +99,12 @@ impl Program {
         Self::of("everything", codecs.iter().map(|codec| module(codec, Module::everything)))
     }
 
+    /// Returns the program that calls every function of all these codecs, but has no client and no simulator. They have
+    /// one code for all protocols.
+    pub fn codecs(codecs: &[Codec]) -> Self {
+        Self::of("codecs", codecs.iter().map(|codec| module(codec, Module::codec)))
+    }
+
     /// Returns the program that does with all these codecs what a driver does: it recognises frames, encodes others,
     /// builds every request and reads its replies.
     pub fn traffic(codecs: &[Codec]) -> Self {

@@ -39,13 +39,22 @@ impl Module {
 
     /// Returns calls of everything.
     pub fn everything(&self) -> TokenStream {
+        let clients = self.blocks().filter(|block| is_of(block, "Destination")).map(|block| {
+            let owner = &block.self_ty;
+            quote!(calls::client::<#owner>();)
+        });
+        let transports = quote!(calls::transport(); calls::isotp(););
+        std::iter::once(self.codec()).chain(clients).chain([transports]).collect()
+    }
+
+    /// Returns calls of every function, and of what the runtime provides for its types, but no client and no simulator.
+    pub fn codec(&self) -> TokenStream {
         // What has parameters of its own is called by the runtime.
         let is_called = |function: &Function<'_>| {
             function.signature.ident != "fmt" && function.signature.generics.type_params().next().is_none()
         };
         let functions = self.functions().filter(is_called).map(Function::call);
-        let transport = quote!(calls::transport(); calls::isotp(););
-        functions.chain(self.signals()).chain(self.blocks().map(provided)).chain([transport]).collect()
+        functions.chain(self.signals()).chain(self.blocks().map(provided)).collect()
     }
 
     /// Returns calls that recognise frames, encode others, build the requests of every message and read their replies.
@@ -71,8 +80,7 @@ impl Module {
 
     /// Returns the names of the structs that frames decode to.
     pub fn layouts(&self) -> impl Iterator<Item = String> {
-        let is_layout = |block: &&ItemImpl| trait_name(block).is_some_and(|name| name.ident == "Layout");
-        let layouts = self.blocks().filter(is_layout);
+        let layouts = self.blocks().filter(|block| is_of(block, "Layout"));
         layouts.map(|block| text(&block.self_ty))
     }
 
@@ -177,7 +185,7 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Grouped") => quote!(calls::aborted::<#owner>();),
         Some("Filled") => quote!(calls::bare::<#owner>();),
         Some("Transferred") => quote!(calls::transferred::<#owner>();),
-        Some("Destination") => quote!(calls::questions::<#owner>(); calls::client::<#owner>();),
+        Some("Destination") => quote!(calls::questions::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("Quantities") => quote!(calls::quantities::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),
@@ -192,6 +200,10 @@ fn text(tokens: &impl ToTokens) -> String {
 
 fn trait_name(block: &ItemImpl) -> Option<&PathSegment> {
     block.trait_.as_ref().and_then(|(path, _)| path.segments.last())
+}
+
+fn is_of(block: &ItemImpl, name: &str) -> bool {
+    trait_name(block).is_some_and(|known| known.ident == name)
 }
 
 fn is_signal(constant: &ImplItemConst) -> bool {
