@@ -250,6 +250,21 @@ fn a_device_model_can_have_limits_of_its_own() {
 }
 
 #[test]
+fn a_value_that_depends_on_the_device_model_has_no_meaning_without_one() {
+    const SHARE: Signal<u16> = Signal::new("share", Place::bytes(0, 1)).by_model().specials(&[(0xFFFF, "all")]);
+    let mut shown = None;
+    SHARE.read(&[0x01, 0xF4, 0, 0, 0, 0, 0, 0], &mut |reading| {
+        shown = Some((reading.raw, reading.meaning == Meaning::None));
+    });
+    assert_eq!(shown, Some((Number::Unsigned(500), true)));
+    let mut payload = request();
+    assert!(SHARE.write(Meaning::Number(Number::Unsigned(500)), &mut payload).is_err());
+    assert_eq!(payload, request());
+    assert_eq!(SHARE.write(Meaning::Name("all"), &mut payload), Ok(()));
+    assert_eq!(payload.data(), &[0xFF, 0xFF, 0, 0, 0, 0, 0, 0]);
+}
+
+#[test]
 fn what_is_not_finite_is_refused_in_requests() {
     assert_eq!(refusal(FREQUENCY.put(f32::NAN, &mut request())), "`frequency` of `report` is no finite number");
     assert_eq!(FREQUENCY.put(f32::INFINITY, &mut reply()), Ok(()));
