@@ -18,8 +18,6 @@ pub struct Access {
     has_values: bool,
     is_from_controller: bool,
     answers: &'static [Option<Who>],
-    /// The modes in which messages are offered, as bits from the lowest on. Those beyond 8 have none.
-    offered: u8,
     set: Option<&'static str>,
     request: Option<&'static Filter>,
     reply: Option<&'static Filter>,
@@ -34,7 +32,6 @@ impl Access {
             has_values: false,
             is_from_controller: false,
             answers,
-            offered: offered(answers),
             set: None,
             request: None,
             reply: None,
@@ -82,7 +79,8 @@ impl Access {
     /// Returns how a message travels by this access, with eight data bytes.
     #[must_use]
     pub const fn of(&'static self, message: &'static str) -> Exchange {
-        Exchange { access: self, message, own: Required::NOTHING, length: 8, offered: self.offered, particulars: None }
+        let offered = offered(self.answers);
+        Exchange { access: self, message, own: Required::NOTHING, length: 8, offered, particulars: None }
     }
 
     /// Returns what a kind of frame shows, whatever the message.
@@ -134,19 +132,18 @@ impl Exchange {
 
     /// Sets the number of data bytes of its frames.
     #[must_use]
-    pub const fn length(mut self, length: u8) -> Self {
-        self.length = length;
-        self
+    pub const fn length(self, length: u8) -> Self {
+        Self { length, ..self }
     }
 
     /// Sets what only some messages have.
     #[must_use]
-    pub const fn with(mut self, particulars: &'static Particulars) -> Self {
-        if let Some(answers) = particulars.answers {
-            self.offered = offered(answers);
-        }
-        self.particulars = Some(particulars);
-        self
+    pub const fn with(self, particulars: &'static Particulars) -> Self {
+        let offered = match particulars.answers {
+            Some(answers) => offered(answers),
+            None => self.offered,
+        };
+        Self { offered, particulars: Some(particulars), ..self }
     }
 
     /// Returns the name of the message.
