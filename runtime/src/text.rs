@@ -96,15 +96,15 @@ impl<const N: usize, const FILL: u8> fmt::Debug for Text<N, FILL> {
 
 impl<const N: usize, const FILL: u8> Raw for Text<N, FILL> {
     fn from_bits(bits: u64) -> Self {
-        let mut text = [0; N];
-        for (byte, value) in text.iter_mut().rev().zip(bits.to_le_bytes()) {
-            *byte = value;
-        }
-        Self(text)
+        bits.to_be_bytes().last_chunk().map_or_else(Self::default, |text| Self(*text))
     }
 
     fn to_bits(self) -> u64 {
-        self.0.iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte))
+        let mut bytes = [0; 8];
+        if let Some(text) = bytes.last_chunk_mut() {
+            *text = self.0;
+        }
+        u64::from_be_bytes(bytes)
     }
 
     fn meaning(&self) -> Meaning<'_> {
