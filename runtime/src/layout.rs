@@ -32,13 +32,19 @@ pub trait Layout: Sized + 'static {
         Self::DECODE(data)
     }
 
+    /// Writes the values to the data, up to the first that `payload` does not take. Returns whether it takes all.
+    fn write_to(&self, payload: &mut Payload) -> bool;
+
     /// Writes the values to the data.
     ///
     /// # Errors
     ///
     /// Refuses values that the signals cannot hold. If `payload` keeps to limits, it also refuses
     /// values outside them.
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error>;
+    #[inline(always)]
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+        if self.write_to(payload) { Ok(()) } else { payload.outcome() }
+    }
 }
 
 /// The type of [`Layout::SIGNALS`].
@@ -53,8 +59,8 @@ impl Layout for () {
     const DECODE: Decode<Self> = |_| ();
 
     #[inline(always)]
-    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
-        Ok(())
+    fn write_to(&self, _: &mut Payload) -> bool {
+        true
     }
 }
 

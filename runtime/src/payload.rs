@@ -1,8 +1,29 @@
 //! Data bytes while they are written.
 
-use crate::{Data, Exchange};
+use crate::physical::{Physical, Scaled};
+use crate::raw::Raw;
+use crate::{Data, Error, Exchange, Signal};
 
 /// The data bytes of a message while they are written.
+///
+/// Answers whether values are taken are joined by `&&`. That compiles faster than a `?` after each value.
+///
+/// ```
+/// use canspec_runtime::{Payload, Place, Signal};
+///
+/// const VOLTAGE: Signal<u16, f64> =
+///     Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(0.0, 750.0);
+/// const FAN: Signal<u8> = Signal::new("fan", Place::byte(2));
+///
+/// let mut payload = Payload::within_limits("set_output", [0; 8]);
+/// assert!(payload.encode(&VOLTAGE, 500.0) && payload.put(&FAN, 3));
+/// assert_eq!((payload.data(), payload.outcome()), (&[0x13, 0x88, 3, 0, 0, 0, 0, 0], Ok(())));
+///
+/// assert!(!(payload.encode(&VOLTAGE, 800.0) && payload.put(&FAN, 4)));
+/// assert_eq!(payload.data()[2], 3);
+/// let error = payload.outcome().unwrap_err();
+/// assert_eq!(error.to_string(), "`voltage` of `set_output` is 800 V, but its limits are 0 and 750 V");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Payload {
     owner: Owner,
@@ -11,6 +32,7 @@ pub struct Payload {
     model: Option<u8>,
     length: Option<u8>,
     received: u8,
+    outcome: Result<(), Error>,
 }
 
 impl Payload {
@@ -28,7 +50,7 @@ impl Payload {
 
     #[inline(always)]
     const fn owned(owner: Owner, data: Data) -> Self {
-        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0 }
+        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0, outcome: Ok(()) }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
@@ -75,6 +97,71 @@ impl Payload {
     #[inline(always)]
     pub(crate) const fn length(&self) -> Option<u8> {
         self.length
+    }
+
+    /// Writes a raw value as [`Signal::put`] does. Returns whether it is taken.
+    #[must_use]
+    #[inline(always)]
+    pub fn put<R: Raw, F: Physical<R>>(&mut self, signal: &'static Signal<R, F>, raw: R) -> bool {
+        let written = signal.put(raw, self);
+        self.takes(written)
+    }
+
+    /// The same for a raw value that the frame can lack, as [`Signal::put_some`] writes it.
+    #[must_use]
+    #[inline(always)]
+    pub fn put_some<R: Raw, F: Physical<R>>(&mut self, signal: &'static Signal<R, F>, raw: Option<R>) -> bool {
+        let written = signal.put_some(raw, self);
+        self.takes(written)
+    }
+
+    /// The same for the raw value of a part of a long message, as [`Signal::keep`] writes it.
+    #[must_use]
+    #[inline(always)]
+    pub fn keep<R: Raw, F: Physical<R>>(&mut self, signal: &'static Signal<R, F>, raw: R) -> bool {
+        let written = signal.keep(raw, self);
+        self.takes(written)
+    }
+
+    /// The same for a physical value, as [`Signal::encode`] writes it.
+    #[must_use]
+    #[inline(always)]
+    pub fn encode<R: Raw, F: Physical<R> + Scaled>(&mut self, signal: &'static Signal<R, F>, physical: F) -> bool {
+        let written = signal.encode(physical, self);
+        self.takes(written)
+    }
+
+    /// The same for a physical value that the frame can lack, as [`Signal::encode_some`] writes it.
+    #[must_use]
+    #[inline(always)]
+    pub fn encode_some<R: Raw, F: Physical<R> + Scaled>(
+        &mut self,
+        signal: &'static Signal<R, F>,
+        physical: Option<F>,
+    ) -> bool {
+        let written = signal.encode_some(physical, self);
+        self.takes(written)
+    }
+
+    #[inline(always)]
+    fn takes(&mut self, written: Result<(), Error>) -> bool {
+        match written {
+            Ok(()) => true,
+            Err(error) => {
+                self.outcome = Err(error);
+                false
+            }
+        }
+    }
+
+    /// Returns why the last value was refused that one of these methods did not take.
+    ///
+    /// # Errors
+    ///
+    /// The same as those of the signal's method.
+    #[inline(always)]
+    pub const fn outcome(&self) -> Result<(), Error> {
+        self.outcome
     }
 
     /// Returns the bytes written so far.
@@ -129,3 +216,36 @@ impl PartialEq for Owner {
 }
 
 impl Eq for Owner {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Place;
+
+    const FAN: Signal<u8> = Signal::new("fan", Place::byte(0)).limits(0, 3);
+    const VALVE: Signal<u8> = Signal::new("valve", Place::byte(1)).limits(0, 3).absent();
+    const VOLTAGE: Signal<u8, f64> = Signal::new("voltage", Place::byte(2)).scale(1, 10).limits(0.0, 3.0);
+    const CURRENT: Signal<u8, f64> = Signal::new("current", Place::byte(3)).scale(1, 10).limits(0.0, 3.0).absent();
+
+    #[test]
+    fn what_is_taken_is_written_and_what_is_not_has_an_outcome() {
+        let mut payload = Payload::within_limits("set", [0; 8]);
+        assert!(payload.put(&FAN, 1) && payload.put_some(&VALVE, Some(2)));
+        assert!(payload.encode(&VOLTAGE, 0.3) && payload.encode_some(&CURRENT, None) && payload.keep(&FAN, 1));
+        assert_eq!((payload.data(), payload.outcome()), (&[1, 2, 3, 0xFF, 0, 0, 0, 0], Ok(())));
+        let refused = |write: fn(&mut Payload) -> bool| {
+            let mut payload = payload;
+            let is_taken = write(&mut payload);
+            (is_taken, payload.outcome().map_err(|error| error.reason().is_some()), *payload.data())
+        };
+        for write in [
+            |payload: &mut Payload| payload.put(&FAN, 4),
+            |payload: &mut Payload| payload.put_some(&VALVE, Some(4)),
+            |payload: &mut Payload| payload.keep(&FAN, 2),
+            |payload: &mut Payload| payload.encode(&VOLTAGE, 3.1),
+            |payload: &mut Payload| payload.encode_some(&CURRENT, Some(3.1)),
+        ] {
+            assert_eq!(refused(write), (false, Err(true), [1, 2, 3, 0xFF, 0, 0, 0, 0]));
+        }
+    }
+}

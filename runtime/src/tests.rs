@@ -317,8 +317,8 @@ fn a_request_to_a_device_model_keeps_to_the_limits_of_that_model_alone() {
         const SIGNALS: &'static [&'static dyn AnySignal] = &[&BOOST];
         const DECODE: Decode<Self> = |data| Self(BOOST.get(data));
 
-        fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-            BOOST.put(self.0, payload)
+        fn write_to(&self, payload: &mut Payload) -> bool {
+            payload.put(&BOOST, self.0)
         }
     }
 

@@ -96,9 +96,9 @@ impl Layout for Written {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self(*data);
 
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         let constants = u64::from_be_bytes(*payload.data());
         payload.replace((constants | u64::from_be_bytes(self.0)).to_be_bytes());
-        Ok(())
+        true
     }
 }

@@ -180,8 +180,8 @@ impl Layout for Heat {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.decode(data) };
 
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.encode(self.power_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::POWER, self.power_w)
     }
 }
 

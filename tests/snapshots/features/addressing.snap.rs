@@ -301,8 +301,8 @@ impl Layout for Level {
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_percent)
     }
 }
 

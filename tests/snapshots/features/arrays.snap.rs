@@ -182,17 +182,17 @@ impl Layout for Cells {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(4);
         if self.voltage_v[2].is_some() || self.group[2].is_some() {
             payload.end_after(6);
         }
-        Self::VOLTAGE_0.encode_some(self.voltage_v[0], payload)?;
-        Self::VOLTAGE_1.encode_some(self.voltage_v[1], payload)?;
-        Self::VOLTAGE_2.encode_some(self.voltage_v[2], payload)?;
-        Self::GROUP_0.put_some(self.group[0], payload)?;
-        Self::GROUP_1.put_some(self.group[1], payload)?;
-        Self::GROUP_2.put_some(self.group[2], payload)
+        payload.encode_some(&Self::VOLTAGE_0, self.voltage_v[0])
+            && payload.encode_some(&Self::VOLTAGE_1, self.voltage_v[1])
+            && payload.encode_some(&Self::VOLTAGE_2, self.voltage_v[2])
+            && payload.put_some(&Self::GROUP_0, self.group[0])
+            && payload.put_some(&Self::GROUP_1, self.group[1])
+            && payload.put_some(&Self::GROUP_2, self.group[2])
     }
 }
 
@@ -239,13 +239,13 @@ impl Layout for State {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT_1.encode(self.current_a[0], payload)?;
-        Self::CURRENT_2.encode(self.current_a[1], payload)?;
-        Self::VALVE_1.put(self.valve[0], payload)?;
-        Self::VALVE_2.put(self.valve[1], payload)?;
-        Self::VALVE_3.put(self.valve[2], payload)?;
-        Self::VALVE_4.put(self.valve[3], payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::CURRENT_1, self.current_a[0])
+            && payload.encode(&Self::CURRENT_2, self.current_a[1])
+            && payload.put(&Self::VALVE_1, self.valve[0])
+            && payload.put(&Self::VALVE_2, self.valve[1])
+            && payload.put(&Self::VALVE_3, self.valve[2])
+            && payload.put(&Self::VALVE_4, self.valve[3])
     }
 }
 

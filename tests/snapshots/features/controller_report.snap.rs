@@ -159,8 +159,8 @@ impl Layout for Delivered {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 
@@ -186,8 +186,8 @@ impl Layout for Demanded {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 

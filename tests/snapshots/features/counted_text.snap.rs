@@ -144,8 +144,8 @@ impl Layout for NoteSize {
     const DECODE: Decode<Self> = |data| Self { letters: Self::LETTERS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LETTERS.put(self.letters, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::LETTERS, self.letters)
     }
 }
 
@@ -203,9 +203,8 @@ impl Layout for NotePart {
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part) && payload.put(&Self::DATA, self.data)
     }
 }
 
@@ -283,10 +282,10 @@ impl Layout for RemarkPart {
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::COUNTER.put(self.counter, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part)
+            && payload.put(&Self::COUNTER, self.counter)
+            && payload.put(&Self::DATA, self.data)
     }
 }
 

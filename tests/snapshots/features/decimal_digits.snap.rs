@@ -231,8 +231,8 @@ impl Layout for Delay {
     const DECODE: Decode<Self> = |data| Self { value_min: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_min, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_min)
     }
 }
 
@@ -294,10 +294,10 @@ impl Layout for Output {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_raw, payload)?;
-        Self::CURRENT.put(self.current_ma, payload)?;
-        Self::TEMPERATURE.put_some(self.temperature_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_raw)
+            && payload.put(&Self::CURRENT, self.current_ma)
+            && payload.put_some(&Self::TEMPERATURE, self.temperature_raw)
     }
 }
 
@@ -330,8 +330,8 @@ impl Layout for Month {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 

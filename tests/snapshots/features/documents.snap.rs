@@ -150,8 +150,8 @@ impl Layout for Speed {
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_rpm, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_rpm)
     }
 }
 

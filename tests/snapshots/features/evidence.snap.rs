@@ -182,10 +182,10 @@ impl Layout for Battery {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)?;
-        Self::LEVEL.put(self.level_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode(&Self::CURRENT, self.current_a)
+            && payload.put(&Self::LEVEL, self.level_percent)
     }
 }
 

@@ -180,10 +180,10 @@ impl Layout for DcStatusPart {
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::COUNTER.put(self.counter, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part)
+            && payload.put(&Self::COUNTER, self.counter)
+            && payload.put(&Self::DATA, self.data)
     }
 }
 

@@ -181,15 +181,15 @@ impl Layout for State {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ALARMS_LEVEL.encode(self.alarms_level_v, payload)?;
-        Self::ALARMS_PACK.put(self.alarms_pack, payload)?;
-        Self::ALARMS_CELL_1.put(self.alarms_cell[0], payload)?;
-        Self::ALARMS_CELL_2.put(self.alarms_cell[1], payload)?;
-        Self::WARNINGS_PACK.put(self.warnings_pack, payload)?;
-        Self::WARNINGS_CELL_1.put(self.warnings_cell[0], payload)?;
-        Self::WARNINGS_CELL_2.put(self.warnings_cell[1], payload)?;
-        Self::WARNINGS_LEVEL.encode(self.warnings_level_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::ALARMS_LEVEL, self.alarms_level_v)
+            && payload.put(&Self::ALARMS_PACK, self.alarms_pack)
+            && payload.put(&Self::ALARMS_CELL_1, self.alarms_cell[0])
+            && payload.put(&Self::ALARMS_CELL_2, self.alarms_cell[1])
+            && payload.put(&Self::WARNINGS_PACK, self.warnings_pack)
+            && payload.put(&Self::WARNINGS_CELL_1, self.warnings_cell[0])
+            && payload.put(&Self::WARNINGS_CELL_2, self.warnings_cell[1])
+            && payload.encode(&Self::WARNINGS_LEVEL, self.warnings_level_v)
     }
 }
 

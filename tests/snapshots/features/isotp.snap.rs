@@ -443,7 +443,7 @@ impl Layout for TpSingleFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(2);
         if self.data[1].is_some() {
             payload.end_after(3);
@@ -463,14 +463,14 @@ impl Layout for TpSingleFrame {
         if self.data[6].is_some() {
             payload.end_after(8);
         }
-        Self::SIZE.put(self.size, payload)?;
-        Self::DATA_1.put_some(self.data[0], payload)?;
-        Self::DATA_2.put_some(self.data[1], payload)?;
-        Self::DATA_3.put_some(self.data[2], payload)?;
-        Self::DATA_4.put_some(self.data[3], payload)?;
-        Self::DATA_5.put_some(self.data[4], payload)?;
-        Self::DATA_6.put_some(self.data[5], payload)?;
-        Self::DATA_7.put_some(self.data[6], payload)
+        payload.put(&Self::SIZE, self.size)
+            && payload.put_some(&Self::DATA_1, self.data[0])
+            && payload.put_some(&Self::DATA_2, self.data[1])
+            && payload.put_some(&Self::DATA_3, self.data[2])
+            && payload.put_some(&Self::DATA_4, self.data[3])
+            && payload.put_some(&Self::DATA_5, self.data[4])
+            && payload.put_some(&Self::DATA_6, self.data[5])
+            && payload.put_some(&Self::DATA_7, self.data[6])
     }
 }
 
@@ -515,9 +515,8 @@ impl Layout for TpFirstFrame {
     const DECODE: Decode<Self> = |data| Self { size: Self::SIZE.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size) && payload.put(&Self::DATA, self.data)
     }
 }
 
@@ -606,7 +605,7 @@ impl Layout for TpConsecutiveFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(2);
         if self.data[1].is_some() {
             payload.end_after(3);
@@ -626,14 +625,14 @@ impl Layout for TpConsecutiveFrame {
         if self.data[6].is_some() {
             payload.end_after(8);
         }
-        Self::NUMBER.put(self.number, payload)?;
-        Self::DATA_1.put_some(self.data[0], payload)?;
-        Self::DATA_2.put_some(self.data[1], payload)?;
-        Self::DATA_3.put_some(self.data[2], payload)?;
-        Self::DATA_4.put_some(self.data[3], payload)?;
-        Self::DATA_5.put_some(self.data[4], payload)?;
-        Self::DATA_6.put_some(self.data[5], payload)?;
-        Self::DATA_7.put_some(self.data[6], payload)
+        payload.put(&Self::NUMBER, self.number)
+            && payload.put_some(&Self::DATA_1, self.data[0])
+            && payload.put_some(&Self::DATA_2, self.data[1])
+            && payload.put_some(&Self::DATA_3, self.data[2])
+            && payload.put_some(&Self::DATA_4, self.data[3])
+            && payload.put_some(&Self::DATA_5, self.data[4])
+            && payload.put_some(&Self::DATA_6, self.data[5])
+            && payload.put_some(&Self::DATA_7, self.data[6])
     }
 }
 
@@ -703,15 +702,15 @@ impl Layout for TpFlowControl {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(3);
         if self.padding.is_some() {
             payload.end_after(8);
         }
-        Self::STATUS.put(self.status, payload)?;
-        Self::BLOCK.put(self.block, payload)?;
-        Self::SEPARATION.put(self.separation, payload)?;
-        Self::PADDING.put_some(self.padding, payload)
+        payload.put(&Self::STATUS, self.status)
+            && payload.put(&Self::BLOCK, self.block)
+            && payload.put(&Self::SEPARATION, self.separation)
+            && payload.put_some(&Self::PADDING, self.padding)
     }
 }
 

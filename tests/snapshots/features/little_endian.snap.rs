@@ -141,14 +141,14 @@ impl Layout for Measurement {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)?;
-        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
-        Self::POWER.encode(self.power_w, payload)?;
-        Self::OUTPUT.put(self.output, payload)?;
-        Self::MODE.put(self.mode, payload)?;
-        Self::COUNTER.put(self.counter, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode(&Self::CURRENT, self.current_a)
+            && payload.encode(&Self::TEMPERATURE, self.temperature_c)
+            && payload.encode(&Self::POWER, self.power_w)
+            && payload.put(&Self::OUTPUT, self.output)
+            && payload.put(&Self::MODE, self.mode)
+            && payload.put(&Self::COUNTER, self.counter)
     }
 }
 

@@ -172,8 +172,8 @@ impl Layout for SupplyAc {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 
@@ -203,8 +203,8 @@ impl Layout for SupplyDc {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 

@@ -223,9 +223,8 @@ impl Layout for SetSpeed {
         |data| Self { speed_rpm: Self::SPEED.get(data), flow_percent: Self::FLOW.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SPEED.put(self.speed_rpm, payload)?;
-        Self::FLOW.encode(self.flow_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SPEED, self.speed_rpm) && payload.encode(&Self::FLOW, self.flow_percent)
     }
 }
 

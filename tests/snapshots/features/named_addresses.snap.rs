@@ -269,8 +269,8 @@ impl Layout for SwitchRelay {
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::POWER, self.power)
     }
 }
 

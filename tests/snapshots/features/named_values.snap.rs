@@ -285,9 +285,8 @@ impl Layout for Switch {
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data), lamp: Self::LAMP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)?;
-        Self::LAMP.put(self.lamp, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::POWER, self.power) && payload.put(&Self::LAMP, self.lamp)
     }
 }
 

@@ -273,17 +273,17 @@ impl Layout for Limits {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(5);
         if self.day.is_some() || payload.had(6) {
             payload.end_after(6);
         }
-        Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
-        Self::TEMPERATURE.put_some(self.temperature_c, payload)?;
-        Self::LAMP.put(self.lamp, payload)?;
-        Self::READY.put(self.ready, payload)?;
-        Self::COUNTER.put(self.counter, payload)?;
-        Self::DAY.put_some(self.day, payload)
+        payload.encode_some(&Self::VOLTAGE, self.voltage_v)
+            && payload.put_some(&Self::TEMPERATURE, self.temperature_c)
+            && payload.put(&Self::LAMP, self.lamp)
+            && payload.put(&Self::READY, self.ready)
+            && payload.put(&Self::COUNTER, self.counter)
+            && payload.put_some(&Self::DAY, self.day)
     }
 }
 

@@ -194,7 +194,7 @@ impl Layout for State {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(3);
         if self.allowed_percent.is_some() {
             payload.end_after(4);
@@ -202,11 +202,11 @@ impl Layout for State {
         if self.hours_h.is_some() || self.cycles.is_some() {
             payload.end_after(7);
         }
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::PHASE.put(self.phase, payload)?;
-        Self::ALLOWED.put_some(self.allowed_percent, payload)?;
-        Self::HOURS.put_some(self.hours_h, payload)?;
-        Self::CYCLES.put_some(self.cycles, payload)
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.put(&Self::PHASE, self.phase)
+            && payload.put_some(&Self::ALLOWED, self.allowed_percent)
+            && payload.put_some(&Self::HOURS, self.hours_h)
+            && payload.put_some(&Self::CYCLES, self.cycles)
     }
 }
 
@@ -250,13 +250,12 @@ impl Layout for Limit {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(1);
         if self.ramp_s.is_some() {
             payload.end_after(2);
         }
-        Self::CURRENT.put(self.current_a, payload)?;
-        Self::RAMP.put_some(self.ramp_s, payload)
+        payload.put(&Self::CURRENT, self.current_a) && payload.put_some(&Self::RAMP, self.ramp_s)
     }
 }
 

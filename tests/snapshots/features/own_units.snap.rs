@@ -178,9 +178,8 @@ impl Layout for SetDose {
         |data| Self { flow_l_per_min: Self::FLOW.decode(data), weight_kg: Self::WEIGHT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::FLOW.encode(self.flow_l_per_min, payload)?;
-        Self::WEIGHT.put(self.weight_kg, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::FLOW, self.flow_l_per_min) && payload.put(&Self::WEIGHT, self.weight_kg)
     }
 }
 

@@ -170,8 +170,8 @@ impl Layout for State {
     const DECODE: Decode<Self> = |data| Self { cells: Self::CELLS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CELLS.put(self.cells, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CELLS, self.cells)
     }
 }
 
@@ -249,9 +249,8 @@ impl Layout for CellsPart {
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part) && payload.put(&Self::DATA, self.data)
     }
 }
 

@@ -188,10 +188,10 @@ impl Layout for LabelPart {
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.keep(self.part, payload)?;
-        Self::COUNTER.put(self.counter, payload)?;
-        Self::DATA.keep(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.keep(&Self::PART, self.part)
+            && payload.put(&Self::COUNTER, self.counter)
+            && payload.keep(&Self::DATA, self.data)
     }
 }
 

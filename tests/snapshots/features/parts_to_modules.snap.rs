@@ -220,8 +220,8 @@ impl Layout for State {
     const DECODE: Decode<Self> = |data| Self { steps: Self::STEPS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::STEPS.put(self.steps, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::STEPS, self.steps)
     }
 }
 
@@ -309,9 +309,8 @@ impl Layout for ProgramPart {
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.keep(self.part, payload)?;
-        Self::DATA.keep(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.keep(&Self::PART, self.part) && payload.keep(&Self::DATA, self.data)
     }
 }
 

@@ -118,9 +118,8 @@ impl Layout for TripsPart {
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part) && payload.put(&Self::DATA, self.data)
     }
 }
 

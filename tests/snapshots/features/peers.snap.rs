@@ -249,8 +249,8 @@ impl Layout for Limits {
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 

@@ -291,10 +291,10 @@ impl Layout for Control {
         |data| Self { mode: Self::MODE.get(data), power: Self::POWER.get(data), voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)?;
-        Self::POWER.put(self.power, payload)?;
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode)
+            && payload.put(&Self::POWER, self.power)
+            && payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 

@@ -219,8 +219,8 @@ impl Layout for VoltageLimit {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 

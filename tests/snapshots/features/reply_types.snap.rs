@@ -162,8 +162,8 @@ impl Layout for Voltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -201,9 +201,8 @@ impl Layout for Revision {
     const DECODE: Decode<Self> = |data| Self { hardware: Self::HARDWARE.get(data), software: Self::SOFTWARE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::HARDWARE.put(self.hardware, payload)?;
-        Self::SOFTWARE.put(self.software, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::HARDWARE, self.hardware) && payload.put(&Self::SOFTWARE, self.software)
     }
 }
 

@@ -85,8 +85,8 @@ impl Layout for Voltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 

@@ -218,8 +218,8 @@ impl Layout for SetCurrent {
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -259,8 +259,8 @@ impl Layout for Stop {
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::REASON.put(self.reason, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::REASON, self.reason)
     }
 }
 

@@ -263,10 +263,10 @@ impl Layout for SetLimits {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_a, payload)?;
-        Self::HEATING.put(self.heating, payload)?;
-        Self::ALARMS.put(self.alarms, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CURRENT, self.current_a)
+            && payload.put(&Self::HEATING, self.heating)
+            && payload.put(&Self::ALARMS, self.alarms)
     }
 }
 

@@ -281,9 +281,8 @@ impl Layout for SetOutput {
         |data| Self { current_raw: Self::CURRENT.get(data), temperature_raw: Self::TEMPERATURE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_raw, payload)?;
-        Self::TEMPERATURE.put(self.temperature_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CURRENT, self.current_raw) && payload.put(&Self::TEMPERATURE, self.temperature_raw)
     }
 }
 

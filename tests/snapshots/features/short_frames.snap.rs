@@ -196,8 +196,8 @@ impl Layout for KeepAlive {
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::OUTPUTS.put(self.outputs, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::OUTPUTS, self.outputs)
     }
 }
 
@@ -234,9 +234,8 @@ impl Layout for Drift {
     const DECODE: Decode<Self> = |data| Self { drift_v: Self::DRIFT.decode(data), turns_rpm: Self::TURNS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::DRIFT.encode(self.drift_v, payload)?;
-        Self::TURNS.put(self.turns_rpm, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::DRIFT, self.drift_v) && payload.put(&Self::TURNS, self.turns_rpm)
     }
 }
 

@@ -148,8 +148,8 @@ impl Layout for State {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 
@@ -182,8 +182,8 @@ impl Layout for Load {
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::POWER, self.power_w)
     }
 }
 

@@ -280,9 +280,8 @@ impl Layout for Failures {
     const DECODE: Decode<Self> = |data| Self { failure: Self::FAILURE.get(data), maker: Self::MAKER.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::FAILURE.put(self.failure, payload)?;
-        Self::MAKER.put(self.maker, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::FAILURE, self.failure) && payload.put(&Self::MAKER, self.maker)
     }
 }
 

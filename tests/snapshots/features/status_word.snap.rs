@@ -236,10 +236,10 @@ impl Layout for Status {
         |data| Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::STATE.put(self.state, payload)?;
-        Self::RED.put(self.red, payload)?;
-        Self::GREEN.put(self.green, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::STATE, self.state)
+            && payload.put(&Self::RED, self.red)
+            && payload.put(&Self::GREEN, self.green)
     }
 }
 

@@ -170,8 +170,8 @@ impl Layout for Version {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -208,9 +208,8 @@ impl Layout for Label {
     const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data), code: Self::CODE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::FAMILY.put(self.family, payload)?;
-        Self::CODE.put(self.code, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::FAMILY, self.family) && payload.put(&Self::CODE, self.code)
     }
 }
 

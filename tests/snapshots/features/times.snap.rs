@@ -187,8 +187,8 @@ impl Layout for Temperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_c)
     }
 }
 

@@ -354,11 +354,11 @@ impl Layout for TpRequestToSend {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::MOST.put(self.most, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::MOST, self.most)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -417,10 +417,10 @@ impl Layout for TpClearToSend {
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::NEXT.put(self.next, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::NEXT, self.next)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -477,10 +477,10 @@ impl Layout for TpEndOfMessage {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -536,10 +536,10 @@ impl Layout for TpBroadcast {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -589,9 +589,8 @@ impl Layout for TpAbort {
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::REASON.put(self.reason, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::REASON, self.reason) && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -637,9 +636,8 @@ impl Layout for TpData {
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::NUMBER.put(self.number, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::NUMBER, self.number) && payload.put(&Self::DATA, self.data)
     }
 }
 

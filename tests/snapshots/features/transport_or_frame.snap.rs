@@ -294,7 +294,7 @@ impl Layout for CellsFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(2);
         if self.voltage_v[1].is_some() || self.group[1].is_some() {
             payload.end_after(4);
@@ -305,14 +305,14 @@ impl Layout for CellsFrame {
         if self.voltage_v[3].is_some() || self.group[3].is_some() {
             payload.end_after(8);
         }
-        Self::VOLTAGE_1.encode_some(self.voltage_v[0], payload)?;
-        Self::VOLTAGE_2.encode_some(self.voltage_v[1], payload)?;
-        Self::VOLTAGE_3.encode_some(self.voltage_v[2], payload)?;
-        Self::VOLTAGE_4.encode_some(self.voltage_v[3], payload)?;
-        Self::GROUP_1.put_some(self.group[0], payload)?;
-        Self::GROUP_2.put_some(self.group[1], payload)?;
-        Self::GROUP_3.put_some(self.group[2], payload)?;
-        Self::GROUP_4.put_some(self.group[3], payload)
+        payload.encode_some(&Self::VOLTAGE_1, self.voltage_v[0])
+            && payload.encode_some(&Self::VOLTAGE_2, self.voltage_v[1])
+            && payload.encode_some(&Self::VOLTAGE_3, self.voltage_v[2])
+            && payload.encode_some(&Self::VOLTAGE_4, self.voltage_v[3])
+            && payload.put_some(&Self::GROUP_1, self.group[0])
+            && payload.put_some(&Self::GROUP_2, self.group[1])
+            && payload.put_some(&Self::GROUP_3, self.group[2])
+            && payload.put_some(&Self::GROUP_4, self.group[3])
     }
 }
 
@@ -373,11 +373,11 @@ impl Layout for TpRequestToSend {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::MOST.put(self.most, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::MOST, self.most)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -436,10 +436,10 @@ impl Layout for TpClearToSend {
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::NEXT.put(self.next, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::NEXT, self.next)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -496,10 +496,10 @@ impl Layout for TpEndOfMessage {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -555,10 +555,10 @@ impl Layout for TpBroadcast {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -608,9 +608,8 @@ impl Layout for TpAbort {
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::REASON.put(self.reason, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::REASON, self.reason) && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -656,9 +655,8 @@ impl Layout for TpData {
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::NUMBER.put(self.number, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::NUMBER, self.number) && payload.put(&Self::DATA, self.data)
     }
 }
 

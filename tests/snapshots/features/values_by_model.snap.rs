@@ -265,9 +265,8 @@ impl Layout for SetMode {
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data), delay_s: Self::DELAY.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)?;
-        Self::DELAY.put(self.delay_s, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode) && payload.put(&Self::DELAY, self.delay_s)
     }
 }
 

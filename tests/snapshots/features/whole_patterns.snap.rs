@@ -149,8 +149,8 @@ impl Layout for Wanted {
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -176,8 +176,8 @@ impl Layout for Limits {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 
@@ -211,8 +211,8 @@ impl Layout for Cycles {
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::COUNT.put(self.count, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::COUNT, self.count)
     }
 }
 

@@ -880,11 +880,11 @@ impl Layout for PackValues {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CUMULATIVE_VOLTAGE.encode(self.cumulative_voltage_v, payload)?;
-        Self::GATHERED_VOLTAGE.encode(self.gathered_voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)?;
-        Self::STATE_OF_CHARGE.encode(self.state_of_charge_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::CUMULATIVE_VOLTAGE, self.cumulative_voltage_v)
+            && payload.encode(&Self::GATHERED_VOLTAGE, self.gathered_voltage_v)
+            && payload.encode(&Self::CURRENT, self.current_a)
+            && payload.encode(&Self::STATE_OF_CHARGE, self.state_of_charge_percent)
     }
 }
 
@@ -949,11 +949,11 @@ impl Layout for CellVoltageExtremes {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
-        Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
-        Self::MINIMUM_VOLTAGE.encode(self.minimum_voltage_v, payload)?;
-        Self::MINIMUM_CELL.put(self.minimum_cell, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::MAXIMUM_VOLTAGE, self.maximum_voltage_v)
+            && payload.put(&Self::MAXIMUM_CELL, self.maximum_cell)
+            && payload.encode(&Self::MINIMUM_VOLTAGE, self.minimum_voltage_v)
+            && payload.put(&Self::MINIMUM_CELL, self.minimum_cell)
     }
 }
 
@@ -1024,11 +1024,11 @@ impl Layout for TemperatureExtremes {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MAXIMUM_TEMPERATURE.encode(self.maximum_temperature_c, payload)?;
-        Self::MAXIMUM_CELL.put(self.maximum_cell, payload)?;
-        Self::MINIMUM_TEMPERATURE.encode(self.minimum_temperature_c, payload)?;
-        Self::MINIMUM_CELL.put(self.minimum_cell, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::MAXIMUM_TEMPERATURE, self.maximum_temperature_c)
+            && payload.put(&Self::MAXIMUM_CELL, self.maximum_cell)
+            && payload.encode(&Self::MINIMUM_TEMPERATURE, self.minimum_temperature_c)
+            && payload.put(&Self::MINIMUM_CELL, self.minimum_cell)
     }
 }
 
@@ -1101,12 +1101,12 @@ impl Layout for ChargeState {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::STATE.put(self.state, payload)?;
-        Self::CHARGE_MOS.put(self.charge_mos, payload)?;
-        Self::DISCHARGE_MOS.put(self.discharge_mos, payload)?;
-        Self::LIFE.put(self.life, payload)?;
-        Self::REMAINING_CAPACITY.encode(self.remaining_capacity_ah, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::STATE, self.state)
+            && payload.put(&Self::CHARGE_MOS, self.charge_mos)
+            && payload.put(&Self::DISCHARGE_MOS, self.discharge_mos)
+            && payload.put(&Self::LIFE, self.life)
+            && payload.encode(&Self::REMAINING_CAPACITY, self.remaining_capacity_ah)
     }
 }
 
@@ -1165,12 +1165,12 @@ impl Layout for StatusInformation {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CELL_COUNT.put(self.cell_count, payload)?;
-        Self::TEMPERATURE_COUNT.put(self.temperature_count, payload)?;
-        Self::CHARGER.put(self.charger, payload)?;
-        Self::LOAD.put(self.load, payload)?;
-        Self::INPUTS_OUTPUTS.put(self.inputs_outputs, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CELL_COUNT, self.cell_count)
+            && payload.put(&Self::TEMPERATURE_COUNT, self.temperature_count)
+            && payload.put(&Self::CHARGER, self.charger)
+            && payload.put(&Self::LOAD, self.load)
+            && payload.put(&Self::INPUTS_OUTPUTS, self.inputs_outputs)
     }
 }
 
@@ -1232,11 +1232,11 @@ impl Layout for CellVoltages {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::VOLTAGE_1.encode(self.voltage_v[0], payload)?;
-        Self::VOLTAGE_2.encode(self.voltage_v[1], payload)?;
-        Self::VOLTAGE_3.encode(self.voltage_v[2], payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part)
+            && payload.encode(&Self::VOLTAGE_1, self.voltage_v[0])
+            && payload.encode(&Self::VOLTAGE_2, self.voltage_v[1])
+            && payload.encode(&Self::VOLTAGE_3, self.voltage_v[2])
     }
 }
 
@@ -1328,15 +1328,15 @@ impl Layout for Temperatures {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::TEMPERATURE_1.encode(self.temperature_c[0], payload)?;
-        Self::TEMPERATURE_2.encode(self.temperature_c[1], payload)?;
-        Self::TEMPERATURE_3.encode(self.temperature_c[2], payload)?;
-        Self::TEMPERATURE_4.encode(self.temperature_c[3], payload)?;
-        Self::TEMPERATURE_5.encode(self.temperature_c[4], payload)?;
-        Self::TEMPERATURE_6.encode(self.temperature_c[5], payload)?;
-        Self::TEMPERATURE_7.encode(self.temperature_c[6], payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part)
+            && payload.encode(&Self::TEMPERATURE_1, self.temperature_c[0])
+            && payload.encode(&Self::TEMPERATURE_2, self.temperature_c[1])
+            && payload.encode(&Self::TEMPERATURE_3, self.temperature_c[2])
+            && payload.encode(&Self::TEMPERATURE_4, self.temperature_c[3])
+            && payload.encode(&Self::TEMPERATURE_5, self.temperature_c[4])
+            && payload.encode(&Self::TEMPERATURE_6, self.temperature_c[5])
+            && payload.encode(&Self::TEMPERATURE_7, self.temperature_c[6])
     }
 }
 
@@ -1369,8 +1369,8 @@ impl Layout for BalanceState {
     const DECODE: Decode<Self> = |data| Self { balance: Self::BALANCE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::BALANCE.put(self.balance, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::BALANCE, self.balance)
     }
 }
 
@@ -1411,9 +1411,8 @@ impl Layout for FailureStatus {
         |data| Self { failures: Self::FAILURES.get(data), fault_code: Self::FAULT_CODE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::FAILURES.put(self.failures, payload)?;
-        Self::FAULT_CODE.put(self.fault_code, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::FAILURES, self.failures) && payload.put(&Self::FAULT_CODE, self.fault_code)
     }
 }
 

@@ -1788,9 +1788,8 @@ impl Layout for Chm {
         |data| Self { version_minor: Self::VERSION_MINOR.get(data), version_major: Self::VERSION_MAJOR.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION_MINOR.put(self.version_minor, payload)?;
-        Self::VERSION_MAJOR.put(self.version_major, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VERSION_MINOR, self.version_minor) && payload.put(&Self::VERSION_MAJOR, self.version_major)
     }
 }
 
@@ -1824,8 +1823,8 @@ impl Layout for Bhm {
     const DECODE: Decode<Self> = |data| Self { maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode_some(&Self::MAXIMUM_VOLTAGE, self.maximum_voltage_v)
     }
 }
 
@@ -1885,10 +1884,10 @@ impl Layout for Crm {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::RESULT.put(self.result, payload)?;
-        Self::CHARGER_NUMBER.put(self.charger_number, payload)?;
-        Self::AREA_CODE.put(self.area_code, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::RESULT, self.result)
+            && payload.put(&Self::CHARGER_NUMBER, self.charger_number)
+            && payload.put(&Self::AREA_CODE, self.area_code)
     }
 }
 
@@ -2356,13 +2355,13 @@ impl Layout for Cts {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SECOND.put_some(self.second, payload)?;
-        Self::MINUTE.put_some(self.minute, payload)?;
-        Self::HOUR.put_some(self.hour, payload)?;
-        Self::DAY.put_some(self.day, payload)?;
-        Self::MONTH.put_some(self.month, payload)?;
-        Self::YEAR.put_some(self.year, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put_some(&Self::SECOND, self.second)
+            && payload.put_some(&Self::MINUTE, self.minute)
+            && payload.put_some(&Self::HOUR, self.hour)
+            && payload.put_some(&Self::DAY, self.day)
+            && payload.put_some(&Self::MONTH, self.month)
+            && payload.put_some(&Self::YEAR, self.year)
     }
 }
 
@@ -2451,11 +2450,11 @@ impl Layout for Cml {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MAXIMUM_VOLTAGE.encode_some(self.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.encode_some(self.minimum_voltage_v, payload)?;
-        Self::MAXIMUM_CURRENT.encode_some(self.maximum_current_a, payload)?;
-        Self::MINIMUM_CURRENT.encode_some(self.minimum_current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode_some(&Self::MAXIMUM_VOLTAGE, self.maximum_voltage_v)
+            && payload.encode_some(&Self::MINIMUM_VOLTAGE, self.minimum_voltage_v)
+            && payload.encode_some(&Self::MAXIMUM_CURRENT, self.maximum_current_a)
+            && payload.encode_some(&Self::MINIMUM_CURRENT, self.minimum_current_a)
     }
 }
 
@@ -2488,8 +2487,8 @@ impl Layout for Bro {
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::READINESS.put(self.readiness, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::READINESS, self.readiness)
     }
 }
 
@@ -2529,8 +2528,8 @@ impl Layout for Cro {
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::READINESS.put(self.readiness, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::READINESS, self.readiness)
     }
 }
 
@@ -2586,10 +2585,10 @@ impl Layout for Bcl {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode_some(self.voltage_v, payload)?;
-        Self::CURRENT.encode_some(self.current_a, payload)?;
-        Self::MODE.put(self.mode, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode_some(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode_some(&Self::CURRENT, self.current_a)
+            && payload.put(&Self::MODE, self.mode)
     }
 }
 
@@ -2805,16 +2804,16 @@ impl Layout for Ccs {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(7);
         if self.byte_8.is_some() {
             payload.end_after(8);
         }
-        Self::OUTPUT_VOLTAGE.encode_some(self.output_voltage_v, payload)?;
-        Self::OUTPUT_CURRENT.encode_some(self.output_current_a, payload)?;
-        Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
-        Self::PERMISSION.put(self.permission, payload)?;
-        Self::BYTE_8.put_some(self.byte_8, payload)
+        payload.encode_some(&Self::OUTPUT_VOLTAGE, self.output_voltage_v)
+            && payload.encode_some(&Self::OUTPUT_CURRENT, self.output_current_a)
+            && payload.put_some(&Self::CHARGING_TIME, self.charging_time_min)
+            && payload.put(&Self::PERMISSION, self.permission)
+            && payload.put_some(&Self::BYTE_8, self.byte_8)
     }
 }
 
@@ -2969,19 +2968,19 @@ impl Layout for Bsm {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::HIGHEST_CELL.encode(self.highest_cell, payload)?;
-        Self::HIGHEST_TEMPERATURE.encode_some(self.highest_temperature_c, payload)?;
-        Self::HIGHEST_TEMPERATURE_POINT.encode_some(self.highest_temperature_point, payload)?;
-        Self::LOWEST_TEMPERATURE.encode_some(self.lowest_temperature_c, payload)?;
-        Self::LOWEST_TEMPERATURE_POINT.encode_some(self.lowest_temperature_point, payload)?;
-        Self::CELL_VOLTAGE_STATE.put(self.cell_voltage_state, payload)?;
-        Self::SOC_STATE.put(self.soc_state, payload)?;
-        Self::OVERCURRENT_STATE.put(self.overcurrent_state, payload)?;
-        Self::TEMPERATURE_STATE.put(self.temperature_state, payload)?;
-        Self::INSULATION_STATE.put(self.insulation_state, payload)?;
-        Self::CONNECTOR_STATE.put(self.connector_state, payload)?;
-        Self::PERMISSION.put(self.permission, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::HIGHEST_CELL, self.highest_cell)
+            && payload.encode_some(&Self::HIGHEST_TEMPERATURE, self.highest_temperature_c)
+            && payload.encode_some(&Self::HIGHEST_TEMPERATURE_POINT, self.highest_temperature_point)
+            && payload.encode_some(&Self::LOWEST_TEMPERATURE, self.lowest_temperature_c)
+            && payload.encode_some(&Self::LOWEST_TEMPERATURE_POINT, self.lowest_temperature_point)
+            && payload.put(&Self::CELL_VOLTAGE_STATE, self.cell_voltage_state)
+            && payload.put(&Self::SOC_STATE, self.soc_state)
+            && payload.put(&Self::OVERCURRENT_STATE, self.overcurrent_state)
+            && payload.put(&Self::TEMPERATURE_STATE, self.temperature_state)
+            && payload.put(&Self::INSULATION_STATE, self.insulation_state)
+            && payload.put(&Self::CONNECTOR_STATE, self.connector_state)
+            && payload.put(&Self::PERMISSION, self.permission)
     }
 }
 
@@ -3134,7 +3133,7 @@ impl Layout for BmvFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(2);
         if self.cell_voltage_v[1].is_some() || self.cell_group[1].is_some() {
             payload.end_after(4);
@@ -3145,14 +3144,14 @@ impl Layout for BmvFrame {
         if self.cell_voltage_v[3].is_some() || self.cell_group[3].is_some() {
             payload.end_after(8);
         }
-        Self::CELL_VOLTAGE_1.encode_some(self.cell_voltage_v[0], payload)?;
-        Self::CELL_VOLTAGE_2.encode_some(self.cell_voltage_v[1], payload)?;
-        Self::CELL_VOLTAGE_3.encode_some(self.cell_voltage_v[2], payload)?;
-        Self::CELL_VOLTAGE_4.encode_some(self.cell_voltage_v[3], payload)?;
-        Self::CELL_GROUP_1.put_some(self.cell_group[0], payload)?;
-        Self::CELL_GROUP_2.put_some(self.cell_group[1], payload)?;
-        Self::CELL_GROUP_3.put_some(self.cell_group[2], payload)?;
-        Self::CELL_GROUP_4.put_some(self.cell_group[3], payload)
+        payload.encode_some(&Self::CELL_VOLTAGE_1, self.cell_voltage_v[0])
+            && payload.encode_some(&Self::CELL_VOLTAGE_2, self.cell_voltage_v[1])
+            && payload.encode_some(&Self::CELL_VOLTAGE_3, self.cell_voltage_v[2])
+            && payload.encode_some(&Self::CELL_VOLTAGE_4, self.cell_voltage_v[3])
+            && payload.put_some(&Self::CELL_GROUP_1, self.cell_group[0])
+            && payload.put_some(&Self::CELL_GROUP_2, self.cell_group[1])
+            && payload.put_some(&Self::CELL_GROUP_3, self.cell_group[2])
+            && payload.put_some(&Self::CELL_GROUP_4, self.cell_group[3])
     }
 }
 
@@ -3310,7 +3309,7 @@ impl Layout for BmtFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(1);
         if self.temperature_c[1].is_some() || payload.had(2) {
             payload.end_after(2);
@@ -3333,14 +3332,14 @@ impl Layout for BmtFrame {
         if self.temperature_c[7].is_some() || payload.had(8) {
             payload.end_after(8);
         }
-        Self::TEMPERATURE_1.encode_some(self.temperature_c[0], payload)?;
-        Self::TEMPERATURE_2.encode_some(self.temperature_c[1], payload)?;
-        Self::TEMPERATURE_3.encode_some(self.temperature_c[2], payload)?;
-        Self::TEMPERATURE_4.encode_some(self.temperature_c[3], payload)?;
-        Self::TEMPERATURE_5.encode_some(self.temperature_c[4], payload)?;
-        Self::TEMPERATURE_6.encode_some(self.temperature_c[5], payload)?;
-        Self::TEMPERATURE_7.encode_some(self.temperature_c[6], payload)?;
-        Self::TEMPERATURE_8.encode_some(self.temperature_c[7], payload)
+        payload.encode_some(&Self::TEMPERATURE_1, self.temperature_c[0])
+            && payload.encode_some(&Self::TEMPERATURE_2, self.temperature_c[1])
+            && payload.encode_some(&Self::TEMPERATURE_3, self.temperature_c[2])
+            && payload.encode_some(&Self::TEMPERATURE_4, self.temperature_c[3])
+            && payload.encode_some(&Self::TEMPERATURE_5, self.temperature_c[4])
+            && payload.encode_some(&Self::TEMPERATURE_6, self.temperature_c[5])
+            && payload.encode_some(&Self::TEMPERATURE_7, self.temperature_c[6])
+            && payload.encode_some(&Self::TEMPERATURE_8, self.temperature_c[7])
     }
 }
 
@@ -3448,7 +3447,7 @@ impl Layout for BspFrame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(1);
         if self.reserved[1].is_some() {
             payload.end_after(2);
@@ -3471,14 +3470,14 @@ impl Layout for BspFrame {
         if self.reserved[7].is_some() {
             payload.end_after(8);
         }
-        Self::RESERVED_1.put_some(self.reserved[0], payload)?;
-        Self::RESERVED_2.put_some(self.reserved[1], payload)?;
-        Self::RESERVED_3.put_some(self.reserved[2], payload)?;
-        Self::RESERVED_4.put_some(self.reserved[3], payload)?;
-        Self::RESERVED_5.put_some(self.reserved[4], payload)?;
-        Self::RESERVED_6.put_some(self.reserved[5], payload)?;
-        Self::RESERVED_7.put_some(self.reserved[6], payload)?;
-        Self::RESERVED_8.put_some(self.reserved[7], payload)
+        payload.put_some(&Self::RESERVED_1, self.reserved[0])
+            && payload.put_some(&Self::RESERVED_2, self.reserved[1])
+            && payload.put_some(&Self::RESERVED_3, self.reserved[2])
+            && payload.put_some(&Self::RESERVED_4, self.reserved[3])
+            && payload.put_some(&Self::RESERVED_5, self.reserved[4])
+            && payload.put_some(&Self::RESERVED_6, self.reserved[5])
+            && payload.put_some(&Self::RESERVED_7, self.reserved[6])
+            && payload.put_some(&Self::RESERVED_8, self.reserved[7])
     }
 }
 
@@ -3632,21 +3631,21 @@ impl Layout for Bst {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::TARGET_SOC.put(self.target_soc, payload)?;
-        Self::TOTAL_VOLTAGE.put(self.total_voltage, payload)?;
-        Self::CELL_VOLTAGE.put(self.cell_voltage, payload)?;
-        Self::CHARGER_STOPPED.put(self.charger_stopped, payload)?;
-        Self::INSULATION.put(self.insulation, payload)?;
-        Self::CONNECTOR_OVERTEMPERATURE.put(self.connector_overtemperature, payload)?;
-        Self::COMPONENT_OVERTEMPERATURE.put(self.component_overtemperature, payload)?;
-        Self::CONNECTOR.put(self.connector, payload)?;
-        Self::PACK_OVERTEMPERATURE.put(self.pack_overtemperature, payload)?;
-        Self::RELAY.put(self.relay, payload)?;
-        Self::DETECTION_POINT_2.put(self.detection_point_2, payload)?;
-        Self::OTHER.put(self.other, payload)?;
-        Self::CURRENT.put(self.current, payload)?;
-        Self::VOLTAGE.put(self.voltage, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::TARGET_SOC, self.target_soc)
+            && payload.put(&Self::TOTAL_VOLTAGE, self.total_voltage)
+            && payload.put(&Self::CELL_VOLTAGE, self.cell_voltage)
+            && payload.put(&Self::CHARGER_STOPPED, self.charger_stopped)
+            && payload.put(&Self::INSULATION, self.insulation)
+            && payload.put(&Self::CONNECTOR_OVERTEMPERATURE, self.connector_overtemperature)
+            && payload.put(&Self::COMPONENT_OVERTEMPERATURE, self.component_overtemperature)
+            && payload.put(&Self::CONNECTOR, self.connector)
+            && payload.put(&Self::PACK_OVERTEMPERATURE, self.pack_overtemperature)
+            && payload.put(&Self::RELAY, self.relay)
+            && payload.put(&Self::DETECTION_POINT_2, self.detection_point_2)
+            && payload.put(&Self::OTHER, self.other)
+            && payload.put(&Self::CURRENT, self.current)
+            && payload.put(&Self::VOLTAGE, self.voltage)
     }
 }
 
@@ -3794,19 +3793,19 @@ impl Layout for Cst {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CONDITION_REACHED.put(self.condition_reached, payload)?;
-        Self::MANUAL_STOP.put(self.manual_stop, payload)?;
-        Self::FAULT_STOP.put(self.fault_stop, payload)?;
-        Self::BMS_STOPPED.put(self.bms_stopped, payload)?;
-        Self::CHARGER_OVERTEMPERATURE.put(self.charger_overtemperature, payload)?;
-        Self::CONNECTOR.put(self.connector, payload)?;
-        Self::INTERNAL_OVERTEMPERATURE.put(self.internal_overtemperature, payload)?;
-        Self::ENERGY_TRANSFER.put(self.energy_transfer, payload)?;
-        Self::EMERGENCY_STOP.put(self.emergency_stop, payload)?;
-        Self::OTHER.put(self.other, payload)?;
-        Self::CURRENT.put(self.current, payload)?;
-        Self::VOLTAGE.put(self.voltage, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CONDITION_REACHED, self.condition_reached)
+            && payload.put(&Self::MANUAL_STOP, self.manual_stop)
+            && payload.put(&Self::FAULT_STOP, self.fault_stop)
+            && payload.put(&Self::BMS_STOPPED, self.bms_stopped)
+            && payload.put(&Self::CHARGER_OVERTEMPERATURE, self.charger_overtemperature)
+            && payload.put(&Self::CONNECTOR, self.connector)
+            && payload.put(&Self::INTERNAL_OVERTEMPERATURE, self.internal_overtemperature)
+            && payload.put(&Self::ENERGY_TRANSFER, self.energy_transfer)
+            && payload.put(&Self::EMERGENCY_STOP, self.emergency_stop)
+            && payload.put(&Self::OTHER, self.other)
+            && payload.put(&Self::CURRENT, self.current)
+            && payload.put(&Self::VOLTAGE, self.voltage)
     }
 }
 
@@ -3898,12 +3897,12 @@ impl Layout for Bsd {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::STATE_OF_CHARGE.put_some(self.state_of_charge_percent, payload)?;
-        Self::LOWEST_CELL_VOLTAGE.encode_some(self.lowest_cell_voltage_v, payload)?;
-        Self::HIGHEST_CELL_VOLTAGE.encode_some(self.highest_cell_voltage_v, payload)?;
-        Self::LOWEST_TEMPERATURE.encode_some(self.lowest_temperature_c, payload)?;
-        Self::HIGHEST_TEMPERATURE.encode_some(self.highest_temperature_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put_some(&Self::STATE_OF_CHARGE, self.state_of_charge_percent)
+            && payload.encode_some(&Self::LOWEST_CELL_VOLTAGE, self.lowest_cell_voltage_v)
+            && payload.encode_some(&Self::HIGHEST_CELL_VOLTAGE, self.highest_cell_voltage_v)
+            && payload.encode_some(&Self::LOWEST_TEMPERATURE, self.lowest_temperature_c)
+            && payload.encode_some(&Self::HIGHEST_TEMPERATURE, self.highest_temperature_c)
     }
 }
 
@@ -3968,10 +3967,10 @@ impl Layout for Csd {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CHARGING_TIME.put_some(self.charging_time_min, payload)?;
-        Self::OUTPUT_ENERGY.encode_some(self.output_energy_wh, payload)?;
-        Self::CHARGER_NUMBER.put(self.charger_number, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put_some(&Self::CHARGING_TIME, self.charging_time_min)
+            && payload.encode_some(&Self::OUTPUT_ENERGY, self.output_energy_wh)
+            && payload.put(&Self::CHARGER_NUMBER, self.charger_number)
     }
 }
 
@@ -4062,14 +4061,14 @@ impl Layout for Bem {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CRM_NOT_RECOGNISED.put(self.crm_not_recognised, payload)?;
-        Self::CRM_RECOGNISED.put(self.crm_recognised, payload)?;
-        Self::CTS_AND_CML.put(self.cts_and_cml, payload)?;
-        Self::CRO.put(self.cro, payload)?;
-        Self::CCS.put(self.ccs, payload)?;
-        Self::CST.put(self.cst, payload)?;
-        Self::CSD.put(self.csd, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CRM_NOT_RECOGNISED, self.crm_not_recognised)
+            && payload.put(&Self::CRM_RECOGNISED, self.crm_recognised)
+            && payload.put(&Self::CTS_AND_CML, self.cts_and_cml)
+            && payload.put(&Self::CRO, self.cro)
+            && payload.put(&Self::CCS, self.ccs)
+            && payload.put(&Self::CST, self.cst)
+            && payload.put(&Self::CSD, self.csd)
     }
 }
 
@@ -4156,14 +4155,14 @@ impl Layout for Cem {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::BRM.put(self.brm, payload)?;
-        Self::BCP.put(self.bcp, payload)?;
-        Self::BRO.put(self.bro, payload)?;
-        Self::BCS.put(self.bcs, payload)?;
-        Self::BCL.put(self.bcl, payload)?;
-        Self::BST.put(self.bst, payload)?;
-        Self::BSD.put(self.bsd, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::BRM, self.brm)
+            && payload.put(&Self::BCP, self.bcp)
+            && payload.put(&Self::BRO, self.bro)
+            && payload.put(&Self::BCS, self.bcs)
+            && payload.put(&Self::BCL, self.bcl)
+            && payload.put(&Self::BST, self.bst)
+            && payload.put(&Self::BSD, self.bsd)
     }
 }
 
@@ -4360,7 +4359,7 @@ impl Layout for Dm1Frame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(4);
         if self.code_spn_low[1].is_some()
             || self.code_fmi[1].is_some()
@@ -4370,16 +4369,16 @@ impl Layout for Dm1Frame {
         {
             payload.end_after(8);
         }
-        Self::CODE_SPN_LOW_1.put_some(self.code_spn_low[0], payload)?;
-        Self::CODE_SPN_LOW_2.put_some(self.code_spn_low[1], payload)?;
-        Self::CODE_FMI_1.put_some(self.code_fmi[0], payload)?;
-        Self::CODE_FMI_2.put_some(self.code_fmi[1], payload)?;
-        Self::CODE_SPN_HIGH_1.put_some(self.code_spn_high[0], payload)?;
-        Self::CODE_SPN_HIGH_2.put_some(self.code_spn_high[1], payload)?;
-        Self::CODE_OCCURRENCE_1.put_some(self.code_occurrence[0], payload)?;
-        Self::CODE_OCCURRENCE_2.put_some(self.code_occurrence[1], payload)?;
-        Self::CODE_CONVERSION_1.put_some(self.code_conversion[0], payload)?;
-        Self::CODE_CONVERSION_2.put_some(self.code_conversion[1], payload)
+        payload.put_some(&Self::CODE_SPN_LOW_1, self.code_spn_low[0])
+            && payload.put_some(&Self::CODE_SPN_LOW_2, self.code_spn_low[1])
+            && payload.put_some(&Self::CODE_FMI_1, self.code_fmi[0])
+            && payload.put_some(&Self::CODE_FMI_2, self.code_fmi[1])
+            && payload.put_some(&Self::CODE_SPN_HIGH_1, self.code_spn_high[0])
+            && payload.put_some(&Self::CODE_SPN_HIGH_2, self.code_spn_high[1])
+            && payload.put_some(&Self::CODE_OCCURRENCE_1, self.code_occurrence[0])
+            && payload.put_some(&Self::CODE_OCCURRENCE_2, self.code_occurrence[1])
+            && payload.put_some(&Self::CODE_CONVERSION_1, self.code_conversion[0])
+            && payload.put_some(&Self::CODE_CONVERSION_2, self.code_conversion[1])
     }
 }
 
@@ -4576,7 +4575,7 @@ impl Layout for Dm2Frame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(4);
         if self.code_spn_low[1].is_some()
             || self.code_fmi[1].is_some()
@@ -4586,16 +4585,16 @@ impl Layout for Dm2Frame {
         {
             payload.end_after(8);
         }
-        Self::CODE_SPN_LOW_1.put_some(self.code_spn_low[0], payload)?;
-        Self::CODE_SPN_LOW_2.put_some(self.code_spn_low[1], payload)?;
-        Self::CODE_FMI_1.put_some(self.code_fmi[0], payload)?;
-        Self::CODE_FMI_2.put_some(self.code_fmi[1], payload)?;
-        Self::CODE_SPN_HIGH_1.put_some(self.code_spn_high[0], payload)?;
-        Self::CODE_SPN_HIGH_2.put_some(self.code_spn_high[1], payload)?;
-        Self::CODE_OCCURRENCE_1.put_some(self.code_occurrence[0], payload)?;
-        Self::CODE_OCCURRENCE_2.put_some(self.code_occurrence[1], payload)?;
-        Self::CODE_CONVERSION_1.put_some(self.code_conversion[0], payload)?;
-        Self::CODE_CONVERSION_2.put_some(self.code_conversion[1], payload)
+        payload.put_some(&Self::CODE_SPN_LOW_1, self.code_spn_low[0])
+            && payload.put_some(&Self::CODE_SPN_LOW_2, self.code_spn_low[1])
+            && payload.put_some(&Self::CODE_FMI_1, self.code_fmi[0])
+            && payload.put_some(&Self::CODE_FMI_2, self.code_fmi[1])
+            && payload.put_some(&Self::CODE_SPN_HIGH_1, self.code_spn_high[0])
+            && payload.put_some(&Self::CODE_SPN_HIGH_2, self.code_spn_high[1])
+            && payload.put_some(&Self::CODE_OCCURRENCE_1, self.code_occurrence[0])
+            && payload.put_some(&Self::CODE_OCCURRENCE_2, self.code_occurrence[1])
+            && payload.put_some(&Self::CODE_CONVERSION_1, self.code_conversion[0])
+            && payload.put_some(&Self::CODE_CONVERSION_2, self.code_conversion[1])
     }
 }
 
@@ -4634,8 +4633,8 @@ impl Layout for Dm3 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4805,7 +4804,7 @@ impl Layout for Dm6Frame {
     }
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+    fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(1);
         if self.data[1].is_some() {
             payload.end_after(2);
@@ -4828,14 +4827,14 @@ impl Layout for Dm6Frame {
         if self.data[7].is_some() {
             payload.end_after(8);
         }
-        Self::DATA_1.put_some(self.data[0], payload)?;
-        Self::DATA_2.put_some(self.data[1], payload)?;
-        Self::DATA_3.put_some(self.data[2], payload)?;
-        Self::DATA_4.put_some(self.data[3], payload)?;
-        Self::DATA_5.put_some(self.data[4], payload)?;
-        Self::DATA_6.put_some(self.data[5], payload)?;
-        Self::DATA_7.put_some(self.data[6], payload)?;
-        Self::DATA_8.put_some(self.data[7], payload)
+        payload.put_some(&Self::DATA_1, self.data[0])
+            && payload.put_some(&Self::DATA_2, self.data[1])
+            && payload.put_some(&Self::DATA_3, self.data[2])
+            && payload.put_some(&Self::DATA_4, self.data[3])
+            && payload.put_some(&Self::DATA_5, self.data[4])
+            && payload.put_some(&Self::DATA_6, self.data[5])
+            && payload.put_some(&Self::DATA_7, self.data[6])
+            && payload.put_some(&Self::DATA_8, self.data[7])
     }
 }
 
@@ -4872,8 +4871,8 @@ impl Layout for Rqst {
     const DECODE: Decode<Self> = |data| Self { pgn: Self::PGN.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PGN.put(self.pgn, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PGN, self.pgn)
     }
 }
 
@@ -4928,10 +4927,10 @@ impl Layout for Ackm {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CONTROL.put(self.control, payload)?;
-        Self::GROUP_FUNCTION.put_some(self.group_function, payload)?;
-        Self::PGN.put(self.pgn, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CONTROL, self.control)
+            && payload.put_some(&Self::GROUP_FUNCTION, self.group_function)
+            && payload.put(&Self::PGN, self.pgn)
     }
 }
 
@@ -4992,11 +4991,11 @@ impl Layout for TpRequestToSend {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::MOST.put(self.most, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::MOST, self.most)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -5056,10 +5055,10 @@ impl Layout for TpClearToSend {
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::NEXT.put(self.next, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::NEXT, self.next)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -5116,10 +5115,10 @@ impl Layout for TpEndOfMessage {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -5179,10 +5178,10 @@ impl Layout for TpBroadcast {
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SIZE.put(self.size, payload)?;
-        Self::PACKETS.put(self.packets, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SIZE, self.size)
+            && payload.put(&Self::PACKETS, self.packets)
+            && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -5233,9 +5232,8 @@ impl Layout for TpAbort {
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::REASON.put(self.reason, payload)?;
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::REASON, self.reason) && payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -5281,9 +5279,8 @@ impl Layout for TpData {
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::NUMBER.put(self.number, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::NUMBER, self.number) && payload.put(&Self::DATA, self.data)
     }
 }
 

@@ -1086,9 +1086,8 @@ impl Layout for SystemOutput {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_v, payload)?;
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_v) && payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1125,8 +1124,8 @@ impl Layout for ModuleCount {
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::COUNT.put(self.count, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::COUNT, self.count)
     }
 }
 
@@ -1167,9 +1166,8 @@ impl Layout for ModuleOutput {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_v, payload)?;
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_v) && payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1234,12 +1232,12 @@ impl Layout for ModuleStatus {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)?;
-        Self::TEMPERATURE.put(self.temperature_c, payload)?;
-        Self::STATUS_2.put(self.status_2, payload)?;
-        Self::STATUS_1.put(self.status_1, payload)?;
-        Self::STATUS_0.put(self.status_0, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group)
+            && payload.put(&Self::TEMPERATURE, self.temperature_c)
+            && payload.put(&Self::STATUS_2, self.status_2)
+            && payload.put(&Self::STATUS_1, self.status_1)
+            && payload.put(&Self::STATUS_0, self.status_0)
     }
 }
 
@@ -1300,10 +1298,10 @@ impl Layout for InputVoltage {
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::AB.encode(self.ab_v, payload)?;
-        Self::BC.encode(self.bc_v, payload)?;
-        Self::CA.encode(self.ca_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::AB, self.ab_v)
+            && payload.encode(&Self::BC, self.bc_v)
+            && payload.encode(&Self::CA, self.ca_v)
     }
 }
 
@@ -1367,10 +1365,10 @@ impl Layout for InputVoltageDc {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PLUS_MINUS.encode(self.plus_minus_v, payload)?;
-        Self::PLUS_PE.encode(self.plus_pe_v, payload)?;
-        Self::MINUS_PE.encode(self.minus_pe_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::PLUS_MINUS, self.plus_minus_v)
+            && payload.encode(&Self::PLUS_PE, self.plus_pe_v)
+            && payload.encode(&Self::MINUS_PE, self.minus_pe_v)
     }
 }
 
@@ -1419,9 +1417,8 @@ impl Layout for ExternalVoltage {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::ALLOWED_CURRENT, self.allowed_current_a)
     }
 }
 
@@ -1483,8 +1480,8 @@ impl Layout for LimitInputCurrent {
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1568,8 +1565,8 @@ impl Layout for SetOperatingMode {
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode)
     }
 }
 
@@ -1641,9 +1638,8 @@ impl Layout for SetWalkIn {
         |data| Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::WALK_IN.put(self.walk_in, payload)?;
-        Self::INTERVAL.encode(self.interval_s, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::WALK_IN, self.walk_in) && payload.encode(&Self::INTERVAL, self.interval_s)
     }
 }
 
@@ -1662,8 +1658,8 @@ impl Layout for SetWalkInReply {
     const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        SetWalkIn::WALK_IN.put(self.walk_in, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&SetWalkIn::WALK_IN, self.walk_in)
     }
 }
 
@@ -1712,8 +1708,8 @@ impl Layout for SetLed {
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LED.put(self.led, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::LED, self.led)
     }
 }
 
@@ -1755,8 +1751,8 @@ impl Layout for SwitchModules {
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::POWER, self.power)
     }
 }
 
@@ -1803,9 +1799,8 @@ impl Layout for SetTotalOutput {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1851,9 +1846,8 @@ impl Layout for SetModuleOutput {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 

@@ -1356,8 +1356,8 @@ impl Layout for OperatingHours {
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_h, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_h)
     }
 }
 
@@ -1399,8 +1399,8 @@ impl Layout for InputPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_w)
     }
 }
 
@@ -1439,8 +1439,8 @@ impl Layout for InputFrequency {
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_hz, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_hz)
     }
 }
 
@@ -1479,8 +1479,8 @@ impl Layout for InputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1519,8 +1519,8 @@ impl Layout for OutputPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_w)
     }
 }
 
@@ -1559,8 +1559,8 @@ impl Layout for Efficiency {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value)
     }
 }
 
@@ -1600,8 +1600,8 @@ impl Layout for OutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1686,8 +1686,8 @@ impl Layout for MaximumOutputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_raw)
     }
 }
 
@@ -1729,8 +1729,8 @@ impl Layout for InputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1769,8 +1769,8 @@ impl Layout for OutputTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1814,8 +1814,8 @@ impl Layout for InputTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1858,8 +1858,8 @@ impl Layout for OutputCurrent1 {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1902,8 +1902,8 @@ impl Layout for OutputCurrent2 {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1949,8 +1949,8 @@ impl Layout for Alarms {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1998,10 +1998,10 @@ impl Layout for FanState {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MINIMUM_DUTY.encode(self.minimum_duty_percent, payload)?;
-        Self::TARGET_DUTY.encode(self.target_duty_percent, payload)?;
-        Self::SPEED.put(self.speed_rpm, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::MINIMUM_DUTY, self.minimum_duty_percent)
+            && payload.encode(&Self::TARGET_DUTY, self.target_duty_percent)
+            && payload.put(&Self::SPEED, self.speed_rpm)
     }
 }
 
@@ -2100,8 +2100,8 @@ impl Layout for CharacteristicData {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2132,8 +2132,8 @@ impl Layout for SerialNumber {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2163,8 +2163,8 @@ impl Layout for Barcode1 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2194,8 +2194,8 @@ impl Layout for Barcode2 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2235,10 +2235,10 @@ impl Layout for Versions {
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::HARDWARE.put(self.hardware, payload)?;
-        Self::DCDC.put(self.dcdc, payload)?;
-        Self::PFC.put(self.pfc, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::HARDWARE, self.hardware)
+            && payload.put(&Self::DCDC, self.dcdc)
+            && payload.put(&Self::PFC, self.pfc)
     }
 }
 
@@ -2271,8 +2271,8 @@ impl Layout for HardwareAddress {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2340,9 +2340,8 @@ impl Layout for ELabelPart {
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::PART.put(self.part, payload)?;
-        Self::DATA.put(self.data, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::PART, self.part) && payload.put(&Self::DATA, self.data)
     }
 }
 
@@ -2420,8 +2419,8 @@ impl Layout for OutputVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2483,8 +2482,8 @@ impl Layout for DefaultOutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2544,8 +2543,8 @@ impl Layout for OvervoltageProtection {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2651,8 +2650,8 @@ impl Layout for CurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_raw)
     }
 }
 
@@ -2758,8 +2757,8 @@ impl Layout for DefaultCurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_raw)
     }
 }
 
@@ -2803,9 +2802,8 @@ impl Layout for InputCurrentLimit {
     const DECODE: Decode<Self> = |data| Self { state: Self::STATE.get(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::STATE.put(self.state, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::STATE, self.state) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -2868,8 +2866,8 @@ impl Layout for FanDuty {
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_percent)
     }
 }
 
@@ -2902,8 +2900,8 @@ impl Layout for Standby {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2955,8 +2953,8 @@ impl Layout for FanMode {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2995,9 +2993,8 @@ impl Layout for ReadyState {
         |data| Self { readiness: Self::READINESS.get(data), load_percent: Self::LOAD.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::READINESS.put(self.readiness, payload)?;
-        Self::LOAD.encode(self.load_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::READINESS, self.readiness) && payload.encode(&Self::LOAD, self.load_percent)
     }
 }
 
@@ -3029,8 +3026,8 @@ impl Layout for CommonLoad {
     const DECODE: Decode<Self> = |data| Self { load_percent: Self::LOAD.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LOAD.encode(self.load_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::LOAD, self.load_percent)
     }
 }
 
@@ -3071,9 +3068,8 @@ impl Layout for ActiveState {
         |data| Self { activity: Self::ACTIVITY.get(data), load_percent: Self::LOAD.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ACTIVITY.put(self.activity, payload)?;
-        Self::LOAD.encode(self.load_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::ACTIVITY, self.activity) && payload.encode(&Self::LOAD, self.load_percent)
     }
 }
 
@@ -3110,9 +3106,8 @@ impl Layout for StartUp10 {
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), content: Self::CONTENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::NUMBER.put(self.number, payload)?;
-        Self::CONTENT.put(self.content, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::NUMBER, self.number) && payload.put(&Self::CONTENT, self.content)
     }
 }
 
@@ -3145,8 +3140,8 @@ impl Layout for StartUp81 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 

@@ -1197,9 +1197,8 @@ impl Layout for SystemOutput {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_v, payload)?;
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_v) && payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1233,8 +1232,8 @@ impl Layout for ModuleCount {
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::COUNT.put(self.count, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::COUNT, self.count)
     }
 }
 
@@ -1273,9 +1272,8 @@ impl Layout for ModuleOutput {
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_v, payload)?;
-        Self::CURRENT.put(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_v) && payload.put(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1335,12 +1333,12 @@ impl Layout for ModuleStatus {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)?;
-        Self::TEMPERATURE.put(self.temperature_c, payload)?;
-        Self::STATUS_2.put(self.status_2, payload)?;
-        Self::STATUS_1.put(self.status_1, payload)?;
-        Self::STATUS_0.put(self.status_0, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group)
+            && payload.put(&Self::TEMPERATURE, self.temperature_c)
+            && payload.put(&Self::STATUS_2, self.status_2)
+            && payload.put(&Self::STATUS_1, self.status_1)
+            && payload.put(&Self::STATUS_0, self.status_0)
     }
 }
 
@@ -1384,10 +1382,10 @@ impl Layout for InputVoltage {
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::AB.encode(self.ab_v, payload)?;
-        Self::BC.encode(self.bc_v, payload)?;
-        Self::CA.encode(self.ca_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::AB, self.ab_v)
+            && payload.encode(&Self::BC, self.bc_v)
+            && payload.encode(&Self::CA, self.ca_v)
     }
 }
 
@@ -1427,9 +1425,8 @@ impl Layout for SystemOutputFixed {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1469,9 +1466,8 @@ impl Layout for ModuleOutputFixed {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1526,11 +1522,11 @@ impl Layout for ModuleLimits {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MAXIMUM_VOLTAGE.put(self.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.put(self.minimum_voltage_v, payload)?;
-        Self::MAXIMUM_CURRENT.encode(self.maximum_current_a, payload)?;
-        Self::RATED_POWER.encode(self.rated_power_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MAXIMUM_VOLTAGE, self.maximum_voltage_v)
+            && payload.put(&Self::MINIMUM_VOLTAGE, self.minimum_voltage_v)
+            && payload.encode(&Self::MAXIMUM_CURRENT, self.maximum_current_a)
+            && payload.encode(&Self::RATED_POWER, self.rated_power_w)
     }
 }
 
@@ -1569,8 +1565,8 @@ impl Layout for Barcode {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1622,9 +1618,8 @@ impl Layout for ExternalVoltage {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::ALLOWED_CURRENT.encode(self.allowed_current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::ALLOWED_CURRENT, self.allowed_current_a)
     }
 }
 
@@ -1661,8 +1656,8 @@ impl Layout for SetWalkIn {
     const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::WALK_IN.put(self.walk_in, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::WALK_IN, self.walk_in)
     }
 }
 
@@ -1697,8 +1692,8 @@ impl Layout for SetLed {
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LED.put(self.led, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::LED, self.led)
     }
 }
 
@@ -1740,8 +1735,8 @@ impl Layout for SetGroup {
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -1778,8 +1773,8 @@ impl Layout for SetSleep {
     const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SLEEP.put(self.sleep, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SLEEP, self.sleep)
     }
 }
 
@@ -1823,8 +1818,8 @@ impl Layout for SwitchModules {
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::POWER, self.power)
     }
 }
 
@@ -1893,9 +1888,8 @@ impl Layout for SetTotalOutput {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -1968,9 +1962,8 @@ impl Layout for SetModuleOutput {
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v) && payload.encode(&Self::CURRENT, self.current_a)
     }
 }
 
@@ -2014,8 +2007,8 @@ impl Layout for SetAddressMode {
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode)
     }
 }
 

@@ -1965,15 +1965,15 @@ impl Layout for CharacteristicWord {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SUPPLY.put(self.supply, payload)?;
-        Self::PHASES.put(self.phases, payload)?;
-        Self::INPUT_TYPE.put(self.input_type, payload)?;
-        Self::RATED_CURRENT.encode(self.rated_current_a, payload)?;
-        Self::OUTPUT_TYPE.put(self.output_type, payload)?;
-        Self::EFFICIENCY.put(self.efficiency, payload)?;
-        Self::MINOR_VERSION.put(self.minor_version, payload)?;
-        Self::GENERATION.put(self.generation, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::SUPPLY, self.supply)
+            && payload.put(&Self::PHASES, self.phases)
+            && payload.put(&Self::INPUT_TYPE, self.input_type)
+            && payload.encode(&Self::RATED_CURRENT, self.rated_current_a)
+            && payload.put(&Self::OUTPUT_TYPE, self.output_type)
+            && payload.put(&Self::EFFICIENCY, self.efficiency)
+            && payload.put(&Self::MINOR_VERSION, self.minor_version)
+            && payload.put(&Self::GENERATION, self.generation)
     }
 }
 
@@ -2028,10 +2028,10 @@ impl Layout for Versions {
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::HARDWARE.put(self.hardware, payload)?;
-        Self::DCDC.put(self.dcdc, payload)?;
-        Self::PFC.put(self.pfc, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::HARDWARE, self.hardware)
+            && payload.put(&Self::DCDC, self.dcdc)
+            && payload.put(&Self::PFC, self.pfc)
     }
 }
 
@@ -2093,9 +2093,8 @@ impl Layout for HardwareAddress {
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), slave: Self::SLAVE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)?;
-        Self::SLAVE.put(self.slave, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group) && payload.put(&Self::SLAVE, self.slave)
     }
 }
 
@@ -2160,8 +2159,8 @@ impl Layout for OutputVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2248,8 +2247,8 @@ impl Layout for DefaultOutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2327,8 +2326,8 @@ impl Layout for OvervoltageProtectionPoint {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -2375,8 +2374,8 @@ impl Layout for CurrentLimitSetting {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value)
     }
 }
 
@@ -2433,8 +2432,8 @@ impl Layout for DefaultCurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value)
     }
 }
 
@@ -2488,8 +2487,8 @@ impl Layout for WalkInTime {
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_s, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_s)
     }
 }
 
@@ -2547,8 +2546,8 @@ impl Layout for TotalRunningTime {
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_h, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_h)
     }
 }
 
@@ -2585,8 +2584,8 @@ impl Layout for SwitchModules {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2618,8 +2617,8 @@ impl Layout for ResetOvervoltageLockout {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2653,8 +2652,8 @@ impl Layout for FlashGreenLight {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2691,8 +2690,8 @@ impl Layout for AssignAddresses {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2733,10 +2732,10 @@ impl Layout for ControlLights {
         |data| Self { red: Self::RED.get(data), yellow: Self::YELLOW.get(data), green: Self::GREEN.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::RED.put(self.red, payload)?;
-        Self::YELLOW.put(self.yellow, payload)?;
-        Self::GREEN.put(self.green, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::RED, self.red)
+            && payload.put(&Self::YELLOW, self.yellow)
+            && payload.put(&Self::GREEN, self.green)
     }
 }
 
@@ -2777,9 +2776,8 @@ impl Layout for ShieldAlarms {
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::EXTENDED.put(self.extended, payload)?;
-        Self::ALARMS.put(self.alarms, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::EXTENDED, self.extended) && payload.put(&Self::ALARMS, self.alarms)
     }
 }
 
@@ -2821,8 +2819,8 @@ impl Layout for ShieldCommunicationAlarm {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2858,8 +2856,8 @@ impl Layout for InputPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_w)
     }
 }
 
@@ -2895,8 +2893,8 @@ impl Layout for InputFrequency {
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_hz, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_hz)
     }
 }
 
@@ -2932,8 +2930,8 @@ impl Layout for InputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -2969,8 +2967,8 @@ impl Layout for OutputPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_w)
     }
 }
 
@@ -3006,8 +3004,8 @@ impl Layout for OutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -3043,8 +3041,8 @@ impl Layout for ActualCurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -3079,8 +3077,8 @@ impl Layout for ActualPowerLimit {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_w)
     }
 }
 
@@ -3120,8 +3118,8 @@ impl Layout for InputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -3161,8 +3159,8 @@ impl Layout for AmbientTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_c)
     }
 }
 
@@ -3198,8 +3196,8 @@ impl Layout for OutputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -3241,9 +3239,8 @@ impl Layout for ModuleStatus {
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::EXTENDED.put(self.extended, payload)?;
-        Self::ALARMS.put(self.alarms, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::EXTENDED, self.extended) && payload.put(&Self::ALARMS, self.alarms)
     }
 }
 
@@ -3278,8 +3275,8 @@ impl Layout for ExternalVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -3310,8 +3307,8 @@ impl Layout for RatedCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -3395,8 +3392,8 @@ impl Layout for AddressModeSwitch {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3449,8 +3446,8 @@ impl Layout for BarcodeVersion {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3503,8 +3500,8 @@ impl Layout for Barcode1 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3557,8 +3554,8 @@ impl Layout for Barcode2 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3611,8 +3608,8 @@ impl Layout for Barcode3 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3665,8 +3662,8 @@ impl Layout for Barcode4 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3697,8 +3694,8 @@ impl Layout for FanDutyCycle {
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_percent)
     }
 }
 
@@ -3741,8 +3738,8 @@ impl Layout for RectifierCurrentLimitSetting {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value)
     }
 }
 
@@ -3785,8 +3782,8 @@ impl Layout for PvCurrentLimitSetting {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value)
     }
 }
 
@@ -3853,8 +3850,8 @@ impl Layout for RectifierOutputVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -3917,8 +3914,8 @@ impl Layout for PvOutputVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -3953,8 +3950,8 @@ impl Layout for PfcAlarmWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -3985,8 +3982,8 @@ impl Layout for PfcFaultWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4017,8 +4014,8 @@ impl Layout for PfcStatusWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4049,8 +4046,8 @@ impl Layout for DcdcAlarmWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4081,8 +4078,8 @@ impl Layout for DcdcFaultWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4113,8 +4110,8 @@ impl Layout for DcdcStatusWord {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4162,8 +4159,8 @@ impl Layout for AutoBootSetting {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4207,8 +4204,8 @@ impl Layout for PvVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -4289,8 +4286,8 @@ impl Layout for MpptSingleScan {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4344,8 +4341,8 @@ impl Layout for MpptScanCycle {
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_s, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_s)
     }
 }
 
@@ -4389,8 +4386,8 @@ impl Layout for WindVoltageSetting {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -4434,8 +4431,8 @@ impl Layout for WindVoltageUpperLimit {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -4479,8 +4476,8 @@ impl Layout for WindVoltageLowerLimit {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -4533,8 +4530,8 @@ impl Layout for CustomerInformation1 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4587,8 +4584,8 @@ impl Layout for CustomerInformation2 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4641,8 +4638,8 @@ impl Layout for CustomerInformation3 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4695,8 +4692,8 @@ impl Layout for CustomerInformation4 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4749,8 +4746,8 @@ impl Layout for CustomerInformation5 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4803,8 +4800,8 @@ impl Layout for CustomerInformation6 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4857,8 +4854,8 @@ impl Layout for CustomerInformation7 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -4911,8 +4908,8 @@ impl Layout for CustomerInformation8 {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 

@@ -1101,8 +1101,8 @@ impl Layout for OutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1133,8 +1133,8 @@ impl Layout for OutputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1170,8 +1170,8 @@ impl Layout for CurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1206,8 +1206,8 @@ impl Layout for DcBoardTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1241,8 +1241,8 @@ impl Layout for InputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1273,8 +1273,8 @@ impl Layout for Pfc0Voltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1305,8 +1305,8 @@ impl Layout for Pfc1Voltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1341,8 +1341,8 @@ impl Layout for AmbientTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1373,8 +1373,8 @@ impl Layout for PhaseAVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1405,8 +1405,8 @@ impl Layout for PhaseBVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1437,8 +1437,8 @@ impl Layout for PhaseCVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1473,8 +1473,8 @@ impl Layout for PfcBoardTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1505,8 +1505,8 @@ impl Layout for RatedPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_w)
     }
 }
 
@@ -1537,8 +1537,8 @@ impl Layout for RatedCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1583,8 +1583,8 @@ impl Layout for SetAltitude {
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_m, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_m)
     }
 }
 
@@ -1621,8 +1621,8 @@ impl Layout for SetOutputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1672,8 +1672,8 @@ impl Layout for SetGroup {
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group)
     }
 }
 
@@ -1714,8 +1714,8 @@ impl Layout for SetAddressMode {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1748,8 +1748,8 @@ impl Layout for SetOutputPower {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1787,8 +1787,8 @@ impl Layout for SetOutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1835,8 +1835,8 @@ impl Layout for SetCurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1872,8 +1872,8 @@ impl Layout for SetOvervoltagePoint {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1911,8 +1911,8 @@ impl Layout for SwitchModules {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1945,8 +1945,8 @@ impl Layout for ResetOvervoltage {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1979,8 +1979,8 @@ impl Layout for SetOvervoltageRelevance {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2018,8 +2018,8 @@ impl Layout for ModuleStatus {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2058,9 +2058,8 @@ impl Layout for GroupAndAddress {
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), address: Self::ADDRESS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)?;
-        Self::ADDRESS.put(self.address, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::GROUP, self.group) && payload.put(&Self::ADDRESS, self.address)
     }
 }
 
@@ -2093,8 +2092,8 @@ impl Layout for ResetShortCircuit {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2127,8 +2126,8 @@ impl Layout for SetInputMode {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2160,8 +2159,8 @@ impl Layout for InputPower {
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_w)
     }
 }
 
@@ -2195,8 +2194,8 @@ impl Layout for Altitude {
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_m, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_m)
     }
 }
 
@@ -2228,8 +2227,8 @@ impl Layout for ActiveInputMode {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2265,8 +2264,8 @@ impl Layout for SerialNumberLow {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2302,8 +2301,8 @@ impl Layout for SerialNumberHigh {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -2339,8 +2338,8 @@ impl Layout for DcdcVersion {
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VERSION, self.version)
     }
 }
 
@@ -2376,8 +2375,8 @@ impl Layout for PfcVersion {
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VERSION, self.version)
     }
 }
 

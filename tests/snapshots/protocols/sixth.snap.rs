@@ -919,14 +919,14 @@ impl Layout for MeasurementA {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)?;
-        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
-        Self::POWER.encode(self.power_w, payload)?;
-        Self::OUTPUT.put(self.output, payload)?;
-        Self::MODE.put(self.mode, payload)?;
-        Self::COUNTER.put(self.counter, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode(&Self::CURRENT, self.current_a)
+            && payload.encode(&Self::TEMPERATURE, self.temperature_c)
+            && payload.encode(&Self::POWER, self.power_w)
+            && payload.put(&Self::OUTPUT, self.output)
+            && payload.put(&Self::MODE, self.mode)
+            && payload.put(&Self::COUNTER, self.counter)
     }
 }
 
@@ -970,11 +970,11 @@ impl Layout for MeasurementB {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::INPUT.put(self.input, payload)?;
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::FAN_SPEED.put(self.fan_speed_rpm, payload)?;
-        Self::LOAD.encode(self.load_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::INPUT, self.input)
+            && payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.put(&Self::FAN_SPEED, self.fan_speed_rpm)
+            && payload.encode(&Self::LOAD, self.load_percent)
     }
 }
 
@@ -1034,8 +1034,8 @@ impl Layout for VoltageSetPoint {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1093,8 +1093,8 @@ impl Layout for CurrentLimit {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1151,8 +1151,8 @@ impl Layout for OutputSwitch {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1212,8 +1212,8 @@ impl Layout for MinimumFanSpeed {
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_percent, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_percent)
     }
 }
 
@@ -1252,8 +1252,8 @@ impl Layout for OutputVoltage {
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_v)
     }
 }
 
@@ -1292,8 +1292,8 @@ impl Layout for OutputCurrent {
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_a)
     }
 }
 
@@ -1340,8 +1340,8 @@ impl Layout for HeatSinkTemperature {
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_c)
     }
 }
 
@@ -1380,8 +1380,8 @@ impl Layout for InputFrequency {
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_hz, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value_hz)
     }
 }
 
@@ -1420,8 +1420,8 @@ impl Layout for OperatingTime {
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_h, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VALUE, self.value_h)
     }
 }
 
@@ -1460,8 +1460,8 @@ impl Layout for SerialNumber {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1500,8 +1500,8 @@ impl Layout for Firmware {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1540,8 +1540,8 @@ impl Layout for State {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1566,8 +1566,8 @@ impl Layout for Refusal {
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
     }
 }
 
@@ -1601,8 +1601,8 @@ impl Layout for KeepAlive {
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::OUTPUTS.put(self.outputs, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::OUTPUTS, self.outputs)
     }
 }
 

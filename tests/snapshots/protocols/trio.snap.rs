@@ -640,12 +640,12 @@ impl Layout for ReferenceValues {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)?;
-        Self::OPERATION.put(self.operation, payload)?;
-        Self::NOMINAL_VOLTAGE.encode(self.nominal_voltage_v, payload)?;
-        Self::MAXIMUM_VOLTAGE.encode(self.maximum_voltage_v, payload)?;
-        Self::MINIMUM_VOLTAGE.encode(self.minimum_voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode)
+            && payload.put(&Self::OPERATION, self.operation)
+            && payload.encode(&Self::NOMINAL_VOLTAGE, self.nominal_voltage_v)
+            && payload.encode(&Self::MAXIMUM_VOLTAGE, self.maximum_voltage_v)
+            && payload.encode(&Self::MINIMUM_VOLTAGE, self.minimum_voltage_v)
     }
 }
 
@@ -693,11 +693,11 @@ impl Layout for OutputValues {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::CURRENT.encode(self.current_a, payload)?;
-        Self::POWER.encode(self.power_w, payload)?;
-        Self::STATUS.put(self.status, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode(&Self::CURRENT, self.current_a)
+            && payload.encode(&Self::POWER, self.power_w)
+            && payload.put(&Self::STATUS, self.status)
     }
 }
 
@@ -743,10 +743,10 @@ impl Layout for TemperatureValues {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::TEMPERATURE.put(self.temperature_c, payload)?;
-        Self::FAN_1.put(self.fan_1_rpm, payload)?;
-        Self::FAN_2.put(self.fan_2_rpm, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::TEMPERATURE, self.temperature_c)
+            && payload.put(&Self::FAN_1, self.fan_1_rpm)
+            && payload.put(&Self::FAN_2, self.fan_2_rpm)
     }
 }
 
@@ -776,8 +776,8 @@ impl Layout for FirmwareVersion {
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VERSION, self.version)
     }
 }
 
@@ -810,9 +810,8 @@ impl Layout for RunningTime {
     const DECODE: Decode<Self> = |data| Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::RUNNING.put(self.running_min, payload)?;
-        Self::TOTAL.put(self.total_min, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::RUNNING, self.running_min) && payload.put(&Self::TOTAL, self.total_min)
     }
 }
 
@@ -844,8 +843,8 @@ impl Layout for ReplacementAdvice {
     const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ADVICE.put(self.advice, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::ADVICE, self.advice)
     }
 }
 
@@ -931,10 +930,10 @@ impl Layout for Control {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)?;
-        Self::OPERATION.put(self.operation, payload)?;
-        Self::VOLTAGE.encode(self.voltage_v, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::MODE, self.mode)
+            && payload.put(&Self::OPERATION, self.operation)
+            && payload.encode(&Self::VOLTAGE, self.voltage_v)
     }
 }
 
@@ -975,8 +974,8 @@ impl Layout for SetAddress {
     const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ADDRESS.put(self.address, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::ADDRESS, self.address)
     }
 }
 

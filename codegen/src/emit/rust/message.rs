@@ -135,6 +135,9 @@ fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request, 
 /// Emits how values are read and written.
 fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
     let Struct { name, is_home, signals, members, lengths, reserved, .. } = own;
+    if members.is_empty() {
+        return None;
+    }
     let home = &message.home;
     let owner = if *is_home { quote!(Self) } else { quote!(#home) };
     let signals: Vec<_> = signals.iter().map(|id| &message.signals[*id]).collect();
@@ -151,10 +154,8 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
     let writes = members.iter().flatten().map(|id| {
         let Signal { constant, member, .. } = &message.signals[*id];
         let (put, value) = (&member.put, member.value());
-        quote!(#owner::#constant.#put(self.#value, payload))
+        quote!(payload.#put(&#owner::#constant, self.#value))
     });
-    let writes: Vec<_> = writes.collect();
-    let (last, others) = writes.split_last()?;
     let end = (!lengths.is_empty()).then(|| end(message, lengths));
     let reserved = reserved.as_ref().map(|(comment, bits)| quote!(#comment const RESERVED: Data = #bits;));
     Some(quote! {
@@ -164,7 +165,7 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
             const DECODE: Decode<Self> = |data| #decode;
             #sized
             #[inline(always)]
-            fn encode(&self, payload: &mut Payload) -> Result<(), Error> { #end #(#others?;)* #last }
+            fn write_to(&self, payload: &mut Payload) -> bool { #end #(#writes)&&* }
         }
     })
 }

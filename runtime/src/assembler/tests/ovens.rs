@@ -2,8 +2,8 @@
 
 use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Task, Who};
 use crate::{
-    Access, AddressType, AnySignal, Bits, Error, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode,
-    Payload, Place, Problem, Protocol, Received, Selector, Signal,
+    Access, AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload,
+    Place, Problem, Protocol, Received, Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -81,8 +81,8 @@ impl Layout for Value {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&VALUE];
     const DECODE: Decode<Self> = |data| Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) };
 
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        VALUE.put(self.value, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&VALUE, self.value)
     }
 }
 

@@ -88,8 +88,8 @@ impl Layout for State {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { cells: Place::byte(0).read(data) };
 
-    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
-        Ok(())
+    fn write_to(&self, _: &mut Payload) -> bool {
+        true
     }
 }
 
@@ -103,8 +103,8 @@ impl Layout for CellsPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[];
     const DECODE: Decode<Self> = |data| Self { part: Cells::NUMBER.read(data), data: Cells::DATA.read(data) };
 
-    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
-        Ok(())
+    fn write_to(&self, _: &mut Payload) -> bool {
+        true
     }
 }
 

@@ -228,11 +228,11 @@ impl Layout for SetOutput {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)?;
-        Self::TEMPERATURE.encode(self.temperature_c, payload)?;
-        Self::DELAY.put(self.delay_s, payload)?;
-        Self::POWER.encode(self.power_w, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.encode(&Self::VOLTAGE, self.voltage_v)
+            && payload.encode(&Self::TEMPERATURE, self.temperature_c)
+            && payload.put(&Self::DELAY, self.delay_s)
+            && payload.encode(&Self::POWER, self.power_w)
     }
 }
 

@@ -171,11 +171,11 @@ impl Layout for SetLimit {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_raw, payload)?;
-        Self::INTERVAL.put(self.interval_s, payload)?;
-        Self::SLOPE.put(self.slope, payload)?;
-        Self::COLD.put(self.cold_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::CURRENT, self.current_raw)
+            && payload.put(&Self::INTERVAL, self.interval_s)
+            && payload.put(&Self::SLOPE, self.slope)
+            && payload.put(&Self::COLD, self.cold_raw)
     }
 }
 
@@ -208,8 +208,8 @@ impl Layout for SetTotal {
     const DECODE: Decode<Self> = |data| Self { total: Self::TOTAL.get(data) };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::TOTAL.put(self.total, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::TOTAL, self.total)
     }
 }
 

@@ -220,11 +220,11 @@ impl Layout for SetOutput {
     };
 
     #[inline(always)]
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.put(self.voltage_raw, payload)?;
-        Self::TEMPERATURE.put(self.temperature_raw, payload)?;
-        Self::DELAY.put(self.delay_s, payload)?;
-        Self::POWER.put(self.power_raw, payload)
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VOLTAGE, self.voltage_raw)
+            && payload.put(&Self::TEMPERATURE, self.temperature_raw)
+            && payload.put(&Self::DELAY, self.delay_s)
+            && payload.put(&Self::POWER, self.power_raw)
     }
 }
 
