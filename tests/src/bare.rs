@@ -47,6 +47,13 @@ impl Codec {
         crate::specs(folder).iter().map(|path| Self::new(path, &options)).collect()
     }
 
+    /// Generates the codecs in whole steps of the specs in a folder, where they differ from those in floats.
+    pub fn all_in_steps(folder: &str, goal: Goal) -> Vec<Self> {
+        let floats = Self::all(folder, Scaled::F64, goal);
+        let pairs = Self::all(folder, Scaled::Steps, goal).into_iter().zip(floats);
+        pairs.filter(|(steps, floats)| steps.code != floats.code).map(|(steps, _)| steps).collect()
+    }
+
     fn new(path: &Path, options: &Options) -> Self {
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let protocol = crate::protocol(path);
