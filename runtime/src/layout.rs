@@ -33,6 +33,8 @@ pub trait Layout: Sized + 'static {
     }
 
     /// Writes the values to the data, up to the first that `payload` does not take. Returns whether it takes all.
+    ///
+    /// `false` must be an answer of `payload`, which then has the reason.
     fn write_to(&self, payload: &mut Payload) -> bool;
 
     /// Writes the values to the data.
