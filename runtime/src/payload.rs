@@ -6,7 +6,8 @@ use crate::{Data, Error, Exchange, Signal};
 
 /// The data bytes of a message while they are written.
 ///
-/// Answers whether values are taken are joined by `&&`. That compiles faster than a `?` after each value.
+/// Each method that writes a value returns whether it is taken. Such answers can be joined by `&&`, which compiles faster
+/// than a `?` after each value.
 ///
 /// ```
 /// use canspec_runtime::{Payload, Place, Signal};
@@ -16,11 +17,15 @@ use crate::{Data, Error, Exchange, Signal};
 /// const FAN: Signal<u8> = Signal::new("fan", Place::byte(2));
 ///
 /// let mut payload = Payload::within_limits("set_output", [0; 8]);
-/// assert!(payload.encode(&VOLTAGE, 500.0) && payload.put(&FAN, 3));
-/// assert_eq!((payload.data(), payload.outcome()), (&[0x13, 0x88, 3, 0, 0, 0, 0, 0], Ok(())));
+/// let is_taken = payload.encode(&VOLTAGE, 500.0) && payload.put(&FAN, 3);
+/// assert!(is_taken);
+/// assert_eq!(payload.data(), &[0x13, 0x88, 3, 0, 0, 0, 0, 0]);
 ///
-/// assert!(!(payload.encode(&VOLTAGE, 800.0) && payload.put(&FAN, 4)));
-/// assert_eq!(payload.data()[2], 3);
+/// // The fan keeps its value, since the voltage before it is refused.
+/// let is_taken = payload.encode(&VOLTAGE, 800.0) && payload.put(&FAN, 4);
+/// assert!(!is_taken);
+/// assert_eq!(payload.data(), &[0x13, 0x88, 3, 0, 0, 0, 0, 0]);
+///
 /// let error = payload.outcome().unwrap_err();
 /// assert_eq!(error.to_string(), "`voltage` of `set_output` is 800 V, but its limits are 0 and 750 V");
 /// ```
@@ -154,7 +159,7 @@ impl Payload {
         }
     }
 
-    /// Returns why the last value was refused that one of these methods did not take.
+    /// Returns why one of these methods refused a value: the last one that was refused.
     ///
     /// # Errors
     ///
