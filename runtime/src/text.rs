@@ -94,6 +94,7 @@ impl<const N: usize, const FILL: u8> fmt::Debug for Text<N, FILL> {
     }
 }
 
+// A signal has at most eight bytes. What is longer stands in a long message, as a run of bytes.
 impl<const N: usize, const FILL: u8> Raw for Text<N, FILL> {
     fn from_bits(bits: u64) -> Self {
         bits.to_be_bytes().last_chunk().map_or_else(Self::default, |text| Self(*text))
