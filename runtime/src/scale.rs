@@ -35,7 +35,7 @@ impl Scale {
 
     /// Returns a scale without offset.
     pub const fn new(numerator: i64, denominator: i64) -> Self {
-        let common = greatest_common_divisor(numerator, denominator);
+        let common = greatest_common_divisor(denominator, numerator);
         Self { numerator: numerator / common, denominator: denominator / common, factor: ONE, offset: 0 }
     }
 

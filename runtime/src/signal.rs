@@ -101,14 +101,16 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Adds the unit of the physical value.
     #[must_use]
-    pub const fn unit(self, unit: &'static str) -> Self {
-        Self { unit: Some(unit), ..self }
+    pub const fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = Some(unit);
+        self
     }
 
     /// Adds the scale: physical = raw × `numerator` / `denominator`.
     #[must_use]
-    pub const fn scale(self, numerator: i64, denominator: i64) -> Self {
-        Self { scale: Some(Scale::new(numerator, denominator)), ..self }
+    pub const fn scale(mut self, numerator: i64, denominator: i64) -> Self {
+        self.scale = Some(Scale::new(numerator, denominator));
+        self
     }
 
     /// Adds the offset `numerator` / `denominator`, in units of the physical value.
@@ -117,48 +119,54 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     ///
     /// Panics if `denominator` is 0. In a constant this is a compile error.
     #[must_use]
-    pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
-        let scale = self.exact_scale().offset(numerator, denominator);
-        Self { scale: Some(scale), ..self }
+    pub const fn offset(mut self, numerator: i64, denominator: i64) -> Self {
+        self.scale = Some(self.exact_scale().offset(numerator, denominator));
+        self
     }
 
     /// Adds the documented limits, both legal. They are physical values, or raw values if `F` is
     /// `R`. They hold if no device model is chosen.
     #[must_use]
-    pub const fn limits(self, minimum: F, maximum: F) -> Self {
-        Self { limits: Some((minimum, maximum)), ..self }
+    pub const fn limits(mut self, minimum: F, maximum: F) -> Self {
+        self.limits = Some((minimum, maximum));
+        self
     }
 
     /// Adds the minimum and maximum of device models, by number of the model. Some models have
     /// none.
     #[must_use]
-    pub const fn model_limits(self, model_limits: &'static [(u8, Option<(F, F)>)]) -> Self {
-        Self { model_limits, ..self }
+    pub const fn model_limits(mut self, model_limits: &'static [(u8, Option<(F, F)>)]) -> Self {
+        self.model_limits = model_limits;
+        self
     }
 
     /// Adds raw values that are legal outside the limits, with their names.
     #[must_use]
-    pub const fn specials(self, specials: &'static [(i64, &'static str)]) -> Self {
-        Self { specials, ..self }
+    pub const fn specials(mut self, specials: &'static [(i64, &'static str)]) -> Self {
+        self.specials = specials;
+        self
     }
 
     /// Says that all ones, or the greatest signed number, mean that there is no value.
     #[must_use]
-    pub const fn absent(self) -> Self {
-        Self { has_absent: true, ..self }
+    pub const fn absent(mut self) -> Self {
+        self.has_absent = true;
+        self
     }
 
     /// Adds what device models do not have, by number of the model. Requests to such a model do not
     /// have it.
     #[must_use]
-    pub const fn lacking(self, lacking: &'static [(u8, Lack)]) -> Self {
-        Self { lacking, ..self }
+    pub const fn lacking(mut self, lacking: &'static [(u8, Lack)]) -> Self {
+        self.lacking = lacking;
+        self
     }
 
     /// Says that the scale depends on the device model. Without a model, the raw value has no meaning.
     #[must_use]
-    pub const fn by_model(self) -> Self {
-        Self { is_by_model: true, ..self }
+    pub const fn by_model(mut self) -> Self {
+        self.is_by_model = true;
+        self
     }
 
     /// Returns the signal of a device model, with physical values of the type `P`, and without unit, scale and limits.
