@@ -14,15 +14,29 @@ use crate::{Bits, Data, Exchange, Frame, IdentifierFields, Kind, Layout, Place, 
 pub struct Incoming {
     frame: Frame,
     pub(crate) model: Option<u8>,
+    heading: Heading,
     /// The numbers of data bytes, if there are several.
     lengths: &'static [u8],
 }
 
 impl Incoming {
-    /// Returns a frame that should be of a device model.
+    /// Returns a frame that should be of a device model. It goes nowhere yet.
     #[inline(always)]
     pub const fn new(frame: Frame, model: Option<u8>) -> Self {
-        Self { frame, model, lengths: &[] }
+        Self { frame, model, heading: Heading::Neither, lengths: &[] }
+    }
+
+    /// Sets where the frame goes.
+    #[must_use]
+    #[inline(always)]
+    pub const fn to(&self, heading: Heading) -> Self {
+        Self { heading, ..*self }
+    }
+
+    /// Returns where the frame goes.
+    #[inline(always)]
+    pub const fn heading(&self) -> Heading {
+        self.heading
     }
 
     /// Returns the identifier as a number.
@@ -82,6 +96,26 @@ impl Incoming {
     #[inline(always)]
     pub const fn of_lengths(&self, lengths: &'static [u8]) -> Self {
         Self { lengths, ..*self }
+    }
+
+    /// Returns the message of a request and of its reply, which carry the same values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the message has.
+    #[inline(always)]
+    pub fn both<P: Protocol>(&self, exchange: &'static Exchange, message: P) -> Result<Received<P>, Problem> {
+        self.pair(exchange, message, message)
+    }
+
+    /// Returns the message of a request or that of its reply, whichever the frame is.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the message has.
+    #[inline(always)]
+    pub fn pair<P: Protocol>(&self, exchange: &'static Exchange, request: P, reply: P) -> Result<Received<P>, Problem> {
+        if self.heading == Heading::Module { self.request(exchange, request) } else { self.reply(exchange, reply) }
     }
 
     /// Returns the message of a request.
@@ -175,23 +209,11 @@ impl<P: Protocol> Headed for IncomingOf<P> {
     type Output = Result<Received<P>, Problem>;
 
     #[inline(always)]
-    fn to_module(self) -> Self::Output {
-        P::request(&self.frame)
-    }
-
-    #[inline(always)]
-    fn to_controller(self) -> Self::Output {
-        P::reply(&self.frame)
-    }
-
-    #[inline(always)]
-    fn to_either(self) -> Self::Output {
-        P::either(&self.frame)
-    }
-
-    #[inline(always)]
-    fn to_neither(self) -> Self::Output {
-        Err(self.frame.unless_foreign::<P>(Problem::Identifier))
+    fn to(self, heading: Heading) -> Self::Output {
+        if heading == Heading::Neither {
+            return Err(self.frame.unless_foreign::<P>(Problem::Identifier));
+        }
+        P::recognise(&self.frame.to(heading))
     }
 }
 
@@ -221,12 +243,41 @@ fn problem<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
     if P::Identifier::is_foreign(id) {
         return Problem::Foreign;
     }
+    let heading = heading::<P>(id);
+    if heading == Heading::Neither {
+        return Problem::Identifier;
+    }
     let incoming = Incoming::new(Frame::new_raw(id, P::FRAME.is_extended(), data, length), None);
-    let lengths = match heading::<P>(id) {
-        None => return Problem::Identifier,
-        Some(Heading::Module) => P::request_lengths(&incoming),
-        Some(Heading::Controller) => P::reply_lengths(&incoming),
-        Some(Heading::Either) => P::either_lengths(&incoming),
-    };
+    let lengths = P::lengths(&incoming.to(heading));
     if lengths.is_empty() || lengths.contains(&length) { Problem::UnknownMessage } else { Problem::Length }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::heaters::{Heat, Message};
+
+    fn kind_and_message(heading: Heading) -> Result<(Kind, Message), Problem> {
+        let incoming = Incoming::new(Frame::new_raw(0x0108_01F0, true, [0; 8], 4), None).to(heading);
+        let heat = Message::Heat(Heat { power_w: 20.0 });
+        let received = incoming.pair(&Heat::READ, Message::ReadHeat, heat);
+        received.map(|received| (received.kind(), *received.content()))
+    }
+
+    #[test]
+    fn of_a_pair_the_way_of_the_frame_chooses() {
+        assert_eq!(kind_and_message(Heading::Module), Ok((Kind::Request, Message::ReadHeat)));
+        let heat = Message::Heat(Heat { power_w: 20.0 });
+        assert_eq!(kind_and_message(Heading::Controller), Ok((Kind::Reply, heat)));
+    }
+
+    #[test]
+    fn both_ways_can_carry_the_same_message() {
+        let incoming = Incoming::new(Frame::new_raw(0x0107_01F0, true, [0; 8], 4), None);
+        for (heading, kind) in [(Heading::Module, Kind::Request), (Heading::Controller, Kind::Reply)] {
+            let received = incoming.to(heading).both(&Heat::SET, Message::ReadHeat);
+            let found = received.map(|received| (received.kind(), *received.content()));
+            assert_eq!(found, Ok((kind, Message::ReadHeat)));
+        }
+    }
 }

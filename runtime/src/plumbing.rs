@@ -18,7 +18,7 @@ pub use crate::long::{ByteRun, LongPayload};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
-pub use crate::protocol::Headed;
+pub use crate::protocol::{Headed, Heading};
 pub use crate::quantity::States;
 pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
@@ -31,9 +31,9 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, AnySignals, Continuation, Decode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Particulars,
-        Pattern, Piece, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds,
-        right_aligned,
+        Address, AnySignals, Continuation, Decode, Headed, Heading, IdFilter, Incoming, Lack, Legend, LongPayload,
+        Particulars, Pattern, Piece, Said, Sent, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds,
+        nanoseconds, right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

@@ -27,12 +27,32 @@ pub trait Protocol: Copy + Debug + 'static {
     const DATA_SELECTORS: bool = false;
     /// Whether foreign identifiers can show what chooses a message. If not, none needs a test of its own.
     const FOREIGN_LIKE_OWN: bool = false;
+    /// Whether the code that recognises frames stands once for both directions. That is smaller, and slower.
+    const IN_ONE_PLACE: bool = false;
     /// Whether requests can be refused by other messages than their replies.
     const REFUSALS: bool = false;
     /// The times that the document states, by their roles.
     const TIMING: Timing = Timing::NONE;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
+
+    /// Recognises a frame by its selectors.
+    ///
+    /// This is one choice where all requests have the selectors of their replies. Otherwise each
+    /// direction has its own.
+    ///
+    /// # Errors
+    ///
+    /// Says why it is not recognised.
+    #[inline(always)]
+    fn recognise(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        match frame.heading() {
+            Heading::Module => Self::request(frame),
+            Heading::Controller => Self::reply(frame),
+            Heading::Either => Self::either(frame),
+            Heading::Neither => frame.unknown(),
+        }
+    }
 
     /// Recognises a frame to a module by its selectors.
     ///
@@ -65,7 +85,17 @@ pub trait Protocol: Copy + Debug + 'static {
         frame.unknown()
     }
 
-    /// Returns the numbers of data bytes of the requests whose selectors the identifier shows.
+    /// Returns the numbers of data bytes of the frames whose selectors an identifier shows.
+    fn lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.heading() {
+            Heading::Module => Self::request_lengths(frame),
+            Heading::Controller => Self::reply_lengths(frame),
+            Heading::Either => Self::either_lengths(frame),
+            Heading::Neither => &[],
+        }
+    }
+
+    /// Returns the numbers of data bytes of the requests whose selectors an identifier shows.
     fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[]
     }
@@ -177,69 +207,56 @@ pub fn own_id<P: Protocol>(frame: &impl embedded_can::Frame) -> Option<u32> {
     (extended == P::FRAME.is_extended()).then_some(id)
 }
 
+/// Where a frame goes, as far as its identifier shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Heading {
+    /// To a module.
+    Module,
+    /// To the controller.
+    Controller,
+    /// To a module or to the controller. The data show to which.
+    Either,
+    /// To none of both.
+    Neither,
+}
+
 /// What is done with a frame, by where it goes.
 pub trait Headed: Sized {
     /// What comes of it.
     type Output;
 
-    /// The frame goes to a module.
-    fn to_module(self) -> Self::Output;
-
-    /// The frame goes to the controller.
-    fn to_controller(self) -> Self::Output;
-
-    /// The identifier does not show to which of both. The data do.
-    fn to_either(self) -> Self::Output;
-
-    /// The identifier shows that the frame goes to neither.
-    fn to_neither(self) -> Self::Output;
-}
-
-/// Where a frame goes, as far as its identifier shows.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Heading {
-    Module,
-    Controller,
-    Either,
+    /// The frame goes there.
+    fn to(self, heading: Heading) -> Self::Output;
 }
 
 /// Only asks where a frame goes.
 struct Asked;
 
 impl Headed for Asked {
-    type Output = Option<Heading>;
+    type Output = Heading;
 
     #[inline(always)]
-    fn to_module(self) -> Option<Heading> {
-        Some(Heading::Module)
-    }
-
-    #[inline(always)]
-    fn to_controller(self) -> Option<Heading> {
-        Some(Heading::Controller)
-    }
-
-    #[inline(always)]
-    fn to_either(self) -> Option<Heading> {
-        Some(Heading::Either)
-    }
-
-    #[inline(always)]
-    fn to_neither(self) -> Option<Heading> {
-        None
+    fn to(self, heading: Heading) -> Heading {
+        heading
     }
 }
 
-/// Tells where a frame with an identifier goes. `None` means that it does not belong to the protocol.
+/// Tells where a frame with an identifier goes. It goes nowhere if it does not belong to the protocol.
 #[inline(always)]
-pub fn heading<P: Protocol>(id: u32) -> Option<Heading> {
-    if is_own::<P>(id) { P::Identifier::head(id, Asked) } else { None }
+pub fn heading<P: Protocol>(id: u32) -> Heading {
+    if is_own::<P>(id) { head::<P>(id) } else { Heading::Neither }
+}
+
+/// Tells where a frame with an identifier of the protocol goes.
+#[inline(always)]
+pub fn head<P: Protocol>(id: u32) -> Heading {
+    P::Identifier::head(id, Asked)
 }
 
 /// Tests whether a frame with an identifier can go to the controller.
 #[inline(always)]
 pub fn is_to_controller<P: Protocol>(id: u32) -> bool {
-    matches!(heading::<P>(id), Some(Heading::Controller | Heading::Either))
+    matches!(heading::<P>(id), Heading::Controller | Heading::Either)
 }
 
 /// Tests whether an identifier has the fixed bits of the protocol and is not foreign.

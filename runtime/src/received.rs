@@ -4,7 +4,8 @@ use core::mem::discriminant;
 
 use crate::incoming::Incoming;
 use crate::layout::{Signals, Task};
-use crate::plumbing::Way;
+use crate::plumbing::{Headed, Way};
+use crate::protocol::head;
 use crate::reply::{error_code, has_error, selected};
 use crate::status::set_bits;
 use crate::{
@@ -54,7 +55,8 @@ impl<P: Protocol> Received<P> {
     #[inline]
     pub(crate) fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let incoming = Incoming::read::<P>(model, frame)?;
-        P::Identifier::head(incoming.raw_id(), incoming.of::<P>())
+        let (id, frame) = (incoming.raw_id(), incoming.of::<P>());
+        if P::IN_ONE_PLACE { frame.to(head::<P>(id)) } else { P::Identifier::head(id, frame) }
     }
 
     #[inline(always)]

@@ -64,10 +64,11 @@ impl Scaled {
 /// What programs are optimized for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Goal {
-    /// Speed: each place that builds a request has all code for it.
+    /// Speed: each place that builds a request has all code for it, and each direction is recognised on its own.
     #[default]
     Speed,
-    /// Size: the compiler decides where that code stands, and what messages share of it.
+    /// Size: the compiler decides where that code stands, and what messages share of it. Both directions are
+    /// recognised in one place, if each request has the selectors of its reply.
     Size,
 }
 

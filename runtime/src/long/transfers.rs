@@ -99,7 +99,7 @@ fn rules<L: Transferred>(id: u32, model: Option<u8>) -> Payload {
 
 /// Tests whether an identifier goes to a module.
 fn is_to_module<T: Transport>(id: u32) -> bool {
-    matches!(heading::<T::Protocol>(id), Some(Heading::Module))
+    heading::<T::Protocol>(id) == Heading::Module
 }
 
 /// Writes a value to a field of an identifier.

@@ -1,6 +1,8 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Headed, IdFilter, Incoming, Particulars, Pattern, Shown, Task, Way, Who};
+use crate::plumbing::{
+    Address, Decode, Headed, Heading, IdFilter, Incoming, Particulars, Pattern, Shown, Task, Way, Who,
+};
 use crate::{
     Access, AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields,
     Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -119,9 +121,9 @@ impl IdentifierFields for Identifier {
 
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match (TARGET.of(id) >= 0xF0, SOURCE.of(id) >= 0xF0) {
-            (false, true) => frame.to_module(),
-            (true, false) => frame.to_controller(),
-            (true, true) | (false, false) => frame.to_neither(),
+            (false, true) => frame.to(Heading::Module),
+            (true, false) => frame.to(Heading::Controller),
+            (true, true) | (false, false) => frame.to(Heading::Neither),
         }
     }
 }

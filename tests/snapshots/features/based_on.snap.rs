@@ -52,8 +52,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SENDER.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -231,31 +231,15 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x002 => frame.request(&Speed::READ, Self::ReadSpeed),
-            0x003 => frame.request(&Temperature::READ, Self::ReadTemperature),
+            0x002 => frame.pair(&Speed::READ, Self::ReadSpeed, Self::Speed(frame.values())),
+            0x003 => frame.pair(&Temperature::READ, Self::ReadTemperature, Self::Temperature(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x002 => frame.reply(&Speed::READ, Self::Speed(frame.values())),
-            0x003 => frame.reply(&Temperature::READ, Self::Temperature(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x002 | 0x003 => &[2],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x002 | 0x003 => &[2],
             _ => &[],

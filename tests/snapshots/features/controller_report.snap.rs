@@ -48,9 +48,9 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SENDER.byte(id) {
-            0x1 => frame.to_controller(),
-            0x2 => frame.to_module(),
-            _ => frame.to_neither(),
+            0x1 => frame.to(Heading::Controller),
+            0x2 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Neither),
         }
     }
 
@@ -246,11 +246,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::NUMBER) == 0x01 { &[4] } else { &[] }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         if frame.id(Identifier::NUMBER) == 0x01 { &[4] } else { &[] }
     }
 

@@ -52,8 +52,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::DIRECTION.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -389,33 +389,16 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x01 => frame.request(&Delay::SET, Self::Delay(frame.values())),
-            0x03 => frame.request(&Output::SET, Self::Output(frame.values())),
-            0x02 => frame.request(&Month::SET, Self::Month(frame.values())),
+            0x01 => frame.both(&Delay::SET, Self::Delay(frame.values())),
+            0x03 => frame.both(&Output::SET, Self::Output(frame.values())),
+            0x02 => frame.both(&Month::SET, Self::Month(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x01 => frame.reply(&Delay::SET, Self::Delay(frame.values())),
-            0x03 => frame.reply(&Output::SET, Self::Output(frame.values())),
-            0x02 => frame.reply(&Month::SET, Self::Month(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x01..=0x03 => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x01..=0x03 => &[8],
             _ => &[],

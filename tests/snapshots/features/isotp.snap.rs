@@ -83,10 +83,10 @@ impl IdentifierFields for Identifier {
                 || ((0x00..=0x7F).contains(&Self::TARGET.of(id)) && (0xF0..=0xF9).contains(&Self::SOURCE.of(id))),
             (0x00..=0x7F).contains(&Self::SOURCE.of(id)),
         ) {
-            (true, true) => frame.to_either(),
-            (true, false) => frame.to_module(),
-            (false, true) => frame.to_controller(),
-            (false, false) => frame.to_neither(),
+            (true, true) => frame.to(Heading::Either),
+            (true, false) => frame.to(Heading::Module),
+            (false, true) => frame.to(Heading::Controller),
+            (false, false) => frame.to(Heading::Neither),
         }
     }
 
@@ -843,11 +843,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(_: &Incoming) -> &'static [u8] {
-        &[2, 3, 4, 5, 6, 7, 8]
-    }
-
-    fn reply_lengths(_: &Incoming) -> &'static [u8] {
+    fn lengths(_: &Incoming) -> &'static [u8] {
         &[2, 3, 4, 5, 6, 7, 8]
     }
 

@@ -53,8 +53,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::FUNCTION.byte(id) {
-            0x1 => frame.to_controller(),
-            _ => frame.to_neither(),
+            0x1 => frame.to(Heading::Controller),
+            _ => frame.to(Heading::Neither),
         }
     }
 }

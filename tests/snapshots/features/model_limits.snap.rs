@@ -48,8 +48,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SENDER.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 

@@ -53,12 +53,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0x20 | 0x40 => match Self::SOURCE.byte(id) {
-                0x20 | 0x40 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0x20 | 0x40 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0x20 | 0x40 => frame.to_module(),
-                _ => frame.to_neither(),
+                0x20 | 0x40 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }
@@ -328,26 +328,14 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x91 => frame.request(&SwitchRelay::SET, Self::SwitchRelay(frame.values())),
+            0x91 => frame.both(&SwitchRelay::SET, Self::SwitchRelay(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x91 => frame.reply(&SwitchRelay::SET, Self::SwitchRelay(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x91 { &[8] } else { &[] }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         if frame.id(Identifier::COMMAND) == 0x91 { &[8] } else { &[] }
     }
 

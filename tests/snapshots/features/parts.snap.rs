@@ -52,8 +52,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TO_HOST.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -324,31 +324,15 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x01 => frame.request(&State::READ, Self::ReadState),
-            0x02 => frame.request(&CellsPart::READ, Self::ReadCells),
+            0x01 => frame.pair(&State::READ, Self::ReadState, Self::State(frame.values())),
+            0x02 => frame.pair(&CellsPart::READ, Self::ReadCells, Self::CellsPart(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x01 => frame.reply(&State::READ, Self::State(frame.values())),
-            0x02 => frame.reply(&CellsPart::READ, Self::CellsPart(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x01 | 0x02 => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x01 | 0x02 => &[8],
             _ => &[],

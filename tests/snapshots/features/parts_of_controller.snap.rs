@@ -48,8 +48,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::OVEN.byte(id) {
-            0xF => frame.to_module(),
-            _ => frame.to_neither(),
+            0xF => frame.to(Heading::Module),
+            _ => frame.to(Heading::Neither),
         }
     }
 

@@ -64,8 +64,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::HOST.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -389,33 +389,16 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match (frame.id(Identifier::COMMAND), frame.id(Identifier::SET)) {
-            (0x01, 0x0) => frame.request(&State::READ, Self::ReadState),
-            (0x02, 0x0) => frame.request(&ProgramPart::READ, Self::ReadProgram),
-            (0x02, 0x1) => frame.request(&ProgramPart::SET, Self::ProgramPart(frame.values())),
+            (0x01, 0x0) => frame.pair(&State::READ, Self::ReadState, Self::State(frame.values())),
+            (0x02, 0x0) => frame.pair(&ProgramPart::READ, Self::ReadProgram, Self::ProgramPart(frame.values())),
+            (0x02, 0x1) => frame.both(&ProgramPart::SET, Self::ProgramPart(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match (frame.id(Identifier::COMMAND), frame.id(Identifier::SET)) {
-            (0x01, 0x0) => frame.reply(&State::READ, Self::State(frame.values())),
-            (0x02, 0x0) => frame.reply(&ProgramPart::READ, Self::ProgramPart(frame.values())),
-            (0x02, 0x1) => frame.reply(&ProgramPart::SET, Self::ProgramPart(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match (frame.id(Identifier::COMMAND), frame.id(Identifier::SET)) {
-            (0x01, 0x0) | (0x02, 0x0 | 0x1) => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match (frame.id(Identifier::COMMAND), frame.id(Identifier::SET)) {
             (0x01, 0x0) | (0x02, 0x0 | 0x1) => &[8],
             _ => &[],

@@ -47,7 +47,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(_: u32, frame: H) -> H::Output {
-        frame.to_controller()
+        frame.to(Heading::Controller)
     }
 }
 

@@ -61,10 +61,10 @@ impl IdentifierFields for Identifier {
                     && (0x20..=0x2F).contains(&Self::SOURCE.of(id))),
             (0x50..=0x5F).contains(&Self::TARGET.of(id)) && (0xF0..=0xF7).contains(&Self::SOURCE.of(id)),
         ) {
-            (true, true) => frame.to_either(),
-            (true, false) => frame.to_module(),
-            (false, true) => frame.to_controller(),
-            (false, false) => frame.to_neither(),
+            (true, true) => frame.to(Heading::Either),
+            (true, false) => frame.to(Heading::Module),
+            (false, true) => frame.to(Heading::Controller),
+            (false, false) => frame.to(Heading::Neither),
         }
     }
 
@@ -302,26 +302,14 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x0001 => frame.request(&Limits::OFFER, Self::Limits(frame.values())),
+            0x0001 => frame.both(&Limits::OFFER, Self::Limits(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x0001 => frame.reply(&Limits::OFFER, Self::Limits(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x0001 { &[2] } else { &[] }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         if frame.id(Identifier::COMMAND) == 0x0001 { &[2] } else { &[] }
     }
 

@@ -52,8 +52,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::DIRECTION.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -348,26 +348,14 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x03 => frame.request(&Control::SET, Self::Control(frame.values())),
+            0x03 => frame.both(&Control::SET, Self::Control(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x03 => frame.reply(&Control::SET, Self::Control(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x03 { &[4] } else { &[] }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         if frame.id(Identifier::COMMAND) == 0x03 { &[4] } else { &[] }
     }
 

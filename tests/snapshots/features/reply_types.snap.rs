@@ -54,8 +54,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::DIRECTION.byte(id) {
-            0x0 => frame.to_module(),
-            _ => frame.to_controller(),
+            0x0 => frame.to(Heading::Module),
+            _ => frame.to(Heading::Controller),
         }
     }
 
@@ -270,11 +270,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(_: &Incoming) -> &'static [u8] {
-        &[8]
-    }
-
-    fn reply_lengths(_: &Incoming) -> &'static [u8] {
+    fn lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

@@ -65,12 +65,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0x40 => match Self::SOURCE.byte(id) {
-                0x40 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0x40 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0x40 => frame.to_module(),
-                _ => frame.to_neither(),
+                0x40 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }
@@ -324,31 +324,15 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x012 => frame.request(&SetCurrent::WRITE, Self::SetCurrent(frame.values())),
-            0x013 => frame.request(&Stop::WRITE, Self::Stop(frame.values())),
+            0x012 => frame.pair(&SetCurrent::WRITE, Self::SetCurrent(frame.values()), Self::SetCurrentWriteReply),
+            0x013 => frame.pair(&Stop::WRITE, Self::Stop(frame.values()), Self::StopWriteReply),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x012 => frame.reply(&SetCurrent::WRITE, Self::SetCurrentWriteReply),
-            0x013 => frame.reply(&Stop::WRITE, Self::StopWriteReply),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x012 | 0x013 => &[4],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x012 | 0x013 => &[4],
             _ => &[],

@@ -54,9 +54,9 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::FUNCTION.byte(id) {
-            0xB => frame.to_controller(),
-            0xC => frame.to_module(),
-            _ => frame.to_neither(),
+            0xB => frame.to(Heading::Controller),
+            0xC => frame.to(Heading::Module),
+            _ => frame.to(Heading::Neither),
         }
     }
 
@@ -377,11 +377,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(_: &Incoming) -> &'static [u8] {
-        &[8]
-    }
-
-    fn reply_lengths(_: &Incoming) -> &'static [u8] {
+    fn lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

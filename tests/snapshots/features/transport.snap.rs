@@ -73,9 +73,9 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SOURCE.byte(id) {
-            0x56 => frame.to_module(),
-            0xF4 => frame.to_controller(),
-            _ => frame.to_neither(),
+            0x56 => frame.to(Heading::Module),
+            0xF4 => frame.to(Heading::Controller),
+            _ => frame.to(Heading::Neither),
         }
     }
 
@@ -739,14 +739,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::FORMAT) {
-            0xEB | 0xEC => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::FORMAT) {
             0xEB | 0xEC => &[8],
             _ => &[],

@@ -73,9 +73,9 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SOURCE.byte(id) {
-            0x56 => frame.to_module(),
-            0xF4 => frame.to_controller(),
-            _ => frame.to_neither(),
+            0x56 => frame.to(Heading::Module),
+            0xF4 => frame.to(Heading::Controller),
+            _ => frame.to(Heading::Neither),
         }
     }
 

@@ -46,7 +46,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(_: u32, frame: H) -> H::Output {
-        frame.to_either()
+        frame.to(Heading::Either)
     }
 
     #[inline]

@@ -71,12 +71,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0x20 | 0x40 | 0x80 => match Self::SOURCE.byte(id) {
-                0x20 | 0x40 | 0x80 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0x20 | 0x40 | 0x80 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0x20 | 0x40 | 0x80 => frame.to_module(),
-                _ => frame.to_neither(),
+                0x20 | 0x40 | 0x80 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }
@@ -1511,45 +1511,34 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x90 => frame.request(&PackValues::READ, Self::ReadPackValues),
-            0x91 => frame.request(&CellVoltageExtremes::READ, Self::ReadCellVoltageExtremes),
-            0x92 => frame.request(&TemperatureExtremes::READ, Self::ReadTemperatureExtremes),
-            0x93 => frame.request(&ChargeState::READ, Self::ReadChargeState),
-            0x94 => frame.request(&StatusInformation::READ, Self::ReadStatusInformation),
-            0x95 => frame.request(&CellVoltages::READ, Self::ReadCellVoltages),
-            0x96 => frame.request(&Temperatures::READ, Self::ReadTemperatures),
-            0x97 => frame.request(&BalanceState::READ, Self::ReadBalanceState),
-            0x98 => frame.request(&FailureStatus::READ, Self::ReadFailureStatus),
+            0x90 => frame.pair(&PackValues::READ, Self::ReadPackValues, Self::PackValues(frame.values())),
+            0x91 => frame.pair(
+                &CellVoltageExtremes::READ,
+                Self::ReadCellVoltageExtremes,
+                Self::CellVoltageExtremes(frame.values()),
+            ),
+            0x92 => frame.pair(
+                &TemperatureExtremes::READ,
+                Self::ReadTemperatureExtremes,
+                Self::TemperatureExtremes(frame.values()),
+            ),
+            0x93 => frame.pair(&ChargeState::READ, Self::ReadChargeState, Self::ChargeState(frame.values())),
+            0x94 => frame.pair(
+                &StatusInformation::READ,
+                Self::ReadStatusInformation,
+                Self::StatusInformation(frame.values()),
+            ),
+            0x95 => frame.pair(&CellVoltages::READ, Self::ReadCellVoltages, Self::CellVoltages(frame.values())),
+            0x96 => frame.pair(&Temperatures::READ, Self::ReadTemperatures, Self::Temperatures(frame.values())),
+            0x97 => frame.pair(&BalanceState::READ, Self::ReadBalanceState, Self::BalanceState(frame.values())),
+            0x98 => frame.pair(&FailureStatus::READ, Self::ReadFailureStatus, Self::FailureStatus(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x90 => frame.reply(&PackValues::READ, Self::PackValues(frame.values())),
-            0x91 => frame.reply(&CellVoltageExtremes::READ, Self::CellVoltageExtremes(frame.values())),
-            0x92 => frame.reply(&TemperatureExtremes::READ, Self::TemperatureExtremes(frame.values())),
-            0x93 => frame.reply(&ChargeState::READ, Self::ChargeState(frame.values())),
-            0x94 => frame.reply(&StatusInformation::READ, Self::StatusInformation(frame.values())),
-            0x95 => frame.reply(&CellVoltages::READ, Self::CellVoltages(frame.values())),
-            0x96 => frame.reply(&Temperatures::READ, Self::Temperatures(frame.values())),
-            0x97 => frame.reply(&BalanceState::READ, Self::BalanceState(frame.values())),
-            0x98 => frame.reply(&FailureStatus::READ, Self::FailureStatus(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x90..=0x98 => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x90..=0x98 => &[8],
             _ => &[],

@@ -95,14 +95,14 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SOURCE.byte(id) {
             0x56 => match Self::TARGET.byte(id) {
-                0x56 => frame.to_neither(),
-                _ => frame.to_module(),
+                0x56 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Module),
             },
             0xF4 => match Self::TARGET.byte(id) {
-                0xF4 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0xF4 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
-            _ => frame.to_neither(),
+            _ => frame.to(Heading::Neither),
         }
     }
 

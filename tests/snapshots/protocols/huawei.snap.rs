@@ -125,10 +125,10 @@ impl IdentifierFields for Identifier {
                 || (Self::PROTOCOL.of(id) == 0x20)
                 || (Self::PROTOCOL.of(id) == 0x21 && Self::DIRECTION.of(id) == 0x1),
         ) {
-            (true, true) => frame.to_either(),
-            (true, false) => frame.to_module(),
-            (false, true) => frame.to_controller(),
-            (false, false) => frame.to_neither(),
+            (true, true) => frame.to(Heading::Either),
+            (true, false) => frame.to(Heading::Module),
+            (false, true) => frame.to(Heading::Controller),
+            (false, false) => frame.to(Heading::Neither),
         }
     }
 

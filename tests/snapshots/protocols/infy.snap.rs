@@ -81,12 +81,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0xF0..=0xF8 => match Self::SOURCE.byte(id) {
-                0xF0..=0xF8 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0xF0..=0xF8 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0xF0..=0xF8 => frame.to_module(),
-                _ => frame.to_neither(),
+                0xF0..=0xF8 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }
@@ -2166,63 +2166,43 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x01 => frame.request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
-            0x02 => frame.request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
-            0x03 => frame.request(&ModuleOutput::READ, Self::ReadModuleOutput),
-            0x04 => frame.request(&ModuleStatus::READ, Self::ReadModuleStatus),
-            0x06 => frame.request(&InputVoltage::READ, Self::ReadInputVoltage),
-            0x08 => frame.request(&SystemOutputFixed::READ_TOTAL, Self::ReadTotalSystemOutputFixed),
-            0x09 => frame.request(&ModuleOutputFixed::READ, Self::ReadModuleOutputFixed),
-            0x0A => frame.request(&ModuleLimits::READ, Self::ReadModuleLimits),
-            0x0B => frame.request(&Barcode::READ, Self::ReadBarcode),
-            0x0C => frame.request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
-            0x13 => frame.request(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
-            0x14 => frame.request(&SetLed::SET, Self::SetLed(frame.values())),
-            0x16 => frame.request(&SetGroup::SET, Self::SetGroup(frame.values())),
-            0x19 => frame.request(&SetSleep::SET, Self::SetSleep(frame.values())),
-            0x1A => frame.request(&SwitchModules::SET, Self::SwitchModules(frame.values())),
-            0x1B => frame.request(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
-            0x1C => frame.request(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
-            0x1F => frame.request(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
+            0x01 => {
+                frame.pair(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput, Self::SystemOutput(frame.values()))
+            }
+            0x02 => frame.pair(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount, Self::ModuleCount(frame.values())),
+            0x03 => frame.pair(&ModuleOutput::READ, Self::ReadModuleOutput, Self::ModuleOutput(frame.values())),
+            0x04 => frame.pair(&ModuleStatus::READ, Self::ReadModuleStatus, Self::ModuleStatus(frame.values())),
+            0x06 => frame.pair(&InputVoltage::READ, Self::ReadInputVoltage, Self::InputVoltage(frame.values())),
+            0x08 => frame.pair(
+                &SystemOutputFixed::READ_TOTAL,
+                Self::ReadTotalSystemOutputFixed,
+                Self::SystemOutputFixed(frame.values()),
+            ),
+            0x09 => frame.pair(
+                &ModuleOutputFixed::READ,
+                Self::ReadModuleOutputFixed,
+                Self::ModuleOutputFixed(frame.values()),
+            ),
+            0x0A => frame.pair(&ModuleLimits::READ, Self::ReadModuleLimits, Self::ModuleLimits(frame.values())),
+            0x0B => frame.pair(&Barcode::READ, Self::ReadBarcode, Self::Barcode(frame.values())),
+            0x0C => {
+                frame.pair(&ExternalVoltage::READ, Self::ReadExternalVoltage, Self::ExternalVoltage(frame.values()))
+            }
+            0x13 => frame.both(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
+            0x14 => frame.both(&SetLed::SET, Self::SetLed(frame.values())),
+            0x16 => frame.both(&SetGroup::SET, Self::SetGroup(frame.values())),
+            0x19 => frame.both(&SetSleep::SET, Self::SetSleep(frame.values())),
+            0x1A => frame.both(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            0x1B => frame.both(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
+            0x1C => frame.both(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
+            0x1F => frame.both(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x01 => frame.reply(&SystemOutput::READ_TOTAL, Self::SystemOutput(frame.values())),
-            0x02 => frame.reply(&ModuleCount::READ_TOTAL, Self::ModuleCount(frame.values())),
-            0x03 => frame.reply(&ModuleOutput::READ, Self::ModuleOutput(frame.values())),
-            0x04 => frame.reply(&ModuleStatus::READ, Self::ModuleStatus(frame.values())),
-            0x06 => frame.reply(&InputVoltage::READ, Self::InputVoltage(frame.values())),
-            0x08 => frame.reply(&SystemOutputFixed::READ_TOTAL, Self::SystemOutputFixed(frame.values())),
-            0x09 => frame.reply(&ModuleOutputFixed::READ, Self::ModuleOutputFixed(frame.values())),
-            0x0A => frame.reply(&ModuleLimits::READ, Self::ModuleLimits(frame.values())),
-            0x0B => frame.reply(&Barcode::READ, Self::Barcode(frame.values())),
-            0x0C => frame.reply(&ExternalVoltage::READ, Self::ExternalVoltage(frame.values())),
-            0x13 => frame.reply(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
-            0x14 => frame.reply(&SetLed::SET, Self::SetLed(frame.values())),
-            0x16 => frame.reply(&SetGroup::SET, Self::SetGroup(frame.values())),
-            0x19 => frame.reply(&SetSleep::SET, Self::SetSleep(frame.values())),
-            0x1A => frame.reply(&SwitchModules::SET, Self::SwitchModules(frame.values())),
-            0x1B => frame.reply(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
-            0x1C => frame.reply(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
-            0x1F => frame.reply(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x01..=0x04 | 0x06 | 0x08..=0x0C | 0x13 | 0x14 | 0x16 | 0x19..=0x1C | 0x1F => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x01..=0x04 | 0x06 | 0x08..=0x0C | 0x13 | 0x14 | 0x16 | 0x19..=0x1C | 0x1F => &[8],
             _ => &[],

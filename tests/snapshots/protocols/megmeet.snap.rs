@@ -108,8 +108,8 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::SENDER.byte(id) {
-            0x0 => frame.to_controller(),
-            _ => frame.to_module(),
+            0x0 => frame.to(Heading::Controller),
+            _ => frame.to(Heading::Module),
         }
     }
 
@@ -5733,14 +5733,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        match frame.id(Identifier::COMMAND) {
-            0x40 | 0x50 | 0x80..=0x82 => &[8],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
             0x40 | 0x50 | 0x80..=0x82 => &[8],
             _ => &[],

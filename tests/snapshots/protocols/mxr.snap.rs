@@ -117,10 +117,10 @@ impl IdentifierFields for Identifier {
                     && Self::SOURCE.of(id) == 0xF0),
             Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0,
         ) {
-            (true, true) => frame.to_either(),
-            (true, false) => frame.to_module(),
-            (false, true) => frame.to_controller(),
-            (false, false) => frame.to_neither(),
+            (true, true) => frame.to(Heading::Either),
+            (true, false) => frame.to(Heading::Module),
+            (false, true) => frame.to(Heading::Controller),
+            (false, false) => frame.to(Heading::Neither),
         }
     }
 
@@ -2661,11 +2661,7 @@ impl Protocol for Message {
         }
     }
 
-    fn request_lengths(_: &Incoming) -> &'static [u8] {
-        &[8]
-    }
-
-    fn reply_lengths(_: &Incoming) -> &'static [u8] {
+    fn lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

@@ -69,9 +69,9 @@ impl IdentifierFields for Identifier {
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::FUNCTION.byte(id) {
-            0x1..=0x2 | 0x5 => frame.to_controller(),
-            0x6 | 0xF => frame.to_module(),
-            _ => frame.to_neither(),
+            0x1..=0x2 | 0x5 => frame.to(Heading::Controller),
+            0x6 | 0xF => frame.to(Heading::Module),
+            _ => frame.to(Heading::Neither),
         }
     }
 

@@ -91,12 +91,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0xF3 => match Self::SOURCE.byte(id) {
-                0xF3 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0xF3 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0xF3 => frame.to_module(),
-                _ => frame.to_neither(),
+                0xF3 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }

@@ -16,6 +16,11 @@ impl<'a> Derives<'a> {
         Self { options }
     }
 
+    /// Returns what programs are optimized for.
+    pub fn goal(self) -> Goal {
+        self.options.goal
+    }
+
     /// Emits the attribute of a function that builds requests, or addresses them.
     pub fn inlined(self) -> TokenStream {
         match self.options.goal {

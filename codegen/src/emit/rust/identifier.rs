@@ -136,10 +136,10 @@ fn outcome(heading: &Heading) -> TokenStream {
 
 fn known(to_module: bool, to_controller: bool) -> TokenStream {
     match (to_module, to_controller) {
-        (true, true) => quote!(frame.to_either()),
-        (true, false) => quote!(frame.to_module()),
-        (false, true) => quote!(frame.to_controller()),
-        (false, false) => quote!(frame.to_neither()),
+        (true, true) => quote!(frame.to(Heading::Either)),
+        (true, false) => quote!(frame.to(Heading::Module)),
+        (false, true) => quote!(frame.to(Heading::Controller)),
+        (false, false) => quote!(frame.to(Heading::Neither)),
     }
 }
 

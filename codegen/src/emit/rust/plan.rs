@@ -45,7 +45,7 @@ use message::Message;
 use models::Models;
 use naming::Pool;
 use quantity::Quantities;
-use recognition::Direction;
+use recognition::Recognition;
 use selector::{InData, Selectors, Source};
 use set::Set;
 use signal::Context;
@@ -102,12 +102,8 @@ pub struct Plan {
     pub transports: Vec<Transport>,
     /// The variants of the enum of all messages.
     pub variants: Vec<Variant>,
-    /// How requests are recognised, if there are any.
-    pub requests: Option<Direction>,
-    /// How replies and reports are recognised, if there are any.
-    pub replies: Option<Direction>,
-    /// How frames are recognised whose identifier does not show the direction, if there are any.
-    pub either: Option<Direction>,
+    /// How frames are recognised.
+    pub recognition: Recognition,
     /// Where quantities are read and set, if there are any.
     pub quantities: Option<Quantities>,
     /// Whether foreign identifiers can show what chooses a message.
@@ -128,7 +124,6 @@ impl Plan {
         let planner = message::Planner { context, selectors: &selectors, accesses: &accesses };
         let messages = protocol.messages.ids().map(|id| planner.message(id)).collect();
         let planner = recognition::Planner { protocol, types, messages: &messages };
-        let course = &protocol.recognition;
         let variants = variant::variants(protocol, types);
         let set = |id| Set::new(protocol, types, &messages, addresses, &variants, id);
         let sets = protocol.messages.ids().map(set).collect();
@@ -159,9 +154,7 @@ impl Plan {
             carriers,
             transports,
             variants,
-            requests: planner.direction(&course.requests),
-            replies: planner.direction(&course.replies),
-            either: planner.direction(&course.either),
+            recognition: planner.recognition(),
             foreign_like_own: identifier::foreign_like_own(protocol),
             quantities: Quantities::new(protocol, &messages),
             accesses: accesses.shared,

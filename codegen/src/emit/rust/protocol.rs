@@ -7,10 +7,11 @@ use super::derives::Derives;
 use super::dispatch::{measuring, recognising};
 use super::filter::normal;
 use super::parts::{inlining, part_name, parts};
-use super::plan::recognition::Direction;
+use super::plan::recognition::Recognition;
 use super::plan::variant::Variant;
 use super::plan::{Plan, literal};
 use super::way::{node, way};
+use crate::emit::Goal;
 
 /// Emits `Message`: its type, then how a frame is recognised.
 pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
@@ -18,7 +19,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
     let decode_for = (!plan.models.rows.is_empty()).then(decode_for);
     let functions = functions(plan);
     let first = functions.iter().filter_map(|parts| parts.first());
-    let implementation = implementation(plan, first);
+    let implementation = implementation(plan, derives, first);
     let further: Vec<_> = functions.iter().flat_map(|parts| parts.iter().skip(1)).collect();
     let decoding = quote! {
         #definition
@@ -78,12 +79,9 @@ fn definition(plan: &Plan, derives: Derives) -> TokenStream {
 ///
 /// A long function goes on in others, which stand behind it.
 fn functions(plan: &Plan) -> Vec<Vec<TokenStream>> {
-    let Plan { requests, replies, either, selectors, .. } = plan;
-    let directions = [("request", requests), ("reply", replies), ("either", either)];
-    let directions = directions.map(|(name, direction)| Some((name, direction.as_ref()?)));
-    let known = || directions.iter().flatten();
-    let recognising = known().map(|(name, direction)| recognising(name, &direction.frames, selectors));
-    let measuring = known().map(|(name, known)| measuring(&format!("{name}_lengths"), &known.lengths, selectors));
+    let Plan { recognition: Recognition { frames, lengths }, selectors, .. } = plan;
+    let recognising = frames.iter().map(|(name, frames)| recognising(name, frames, selectors));
+    let measuring = lengths.iter().map(|(name, lengths)| measuring(name, lengths, selectors));
     recognising.chain(measuring).chain([run_of(&plan.variants)]).collect()
 }
 
@@ -125,7 +123,7 @@ fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
     quote!(#inlined fn #name<T: Task>(&self, #task: T) -> T::Output { #body })
 }
 
-fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
+fn implementation<'a>(plan: &Plan, derives: Derives, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
     let timing = plan.timing.as_ref().map(|_| {
@@ -134,7 +132,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
         )
     });
     let starting = plan.starting.iter().map(|code| literal::decimal(*code));
-    let truths = truths(plan);
+    let truths = truths(plan, derives);
     let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     quote! {
@@ -157,20 +155,21 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
 }
 
 /// Names what is true of the protocol, and not of every one.
-fn truths(plan: &Plan) -> impl Iterator<Item = Ident> {
+fn truths(plan: &Plan, derives: Derives) -> impl Iterator<Item = Ident> {
     let mut exchanges = plan.messages.iter().flat_map(|message| &message.exchanges);
     let truths = [
         ("CONTROLLER_REPORTS", plan.accesses.iter().any(|access| access.is_from_controller)),
         ("DATA_SELECTORS", !plan.in_data.is_empty()),
         ("FOREIGN_LIKE_OWN", plan.foreign_like_own),
+        ("IN_ONE_PLACE", derives.goal() == Goal::Size && plan.recognition.is_of_both_directions()),
         ("REFUSALS", exchanges.any(|exchange| exchange.refusal.is_some())),
     ];
     truths.into_iter().filter(|(_, is_true)| *is_true).map(|(name, _)| format_ident!("{name}"))
 }
 
 /// Returns the number of data bytes that every frame has, if all have as many.
-fn common_length(Plan { requests, replies, .. }: &Plan) -> Option<u8> {
-    let mut lengths = requests.iter().chain(replies).flat_map(Direction::lengths);
+fn common_length(plan: &Plan) -> Option<u8> {
+    let mut lengths = plan.recognition.all_lengths();
     let first = lengths.next()?;
     lengths.all(|length| length == first).then_some(first)
 }

@@ -1,6 +1,6 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
-use crate::plumbing::{Address, Continuation, Decode, Headed, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Continuation, Decode, Headed, Heading, Incoming, Pattern, Task, Who};
 use crate::{
     Access, AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Payload,
     Place, Problem, Protocol, Received, Selector, Signal,
@@ -94,7 +94,7 @@ impl IdentifierFields for Identifier {
     const TO_RAW: fn(Self) -> u32 = |identifier| identifier.0;
 
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        if DIRECTION.of(id) == 0 { frame.to_module() } else { frame.to_controller() }
+        if DIRECTION.of(id) == 0 { frame.to(Heading::Module) } else { frame.to(Heading::Controller) }
     }
 }
 

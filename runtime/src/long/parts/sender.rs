@@ -122,8 +122,8 @@ fn rules<L: Parted>(model: Option<u8>, is_to_module: bool) -> Result<Payload, Er
 fn is_to_module<L: Parted>(blank: &Frame) -> bool {
     let shows = || L::TO_MODULE.iter().filter_map(|(exchange, kind)| exchange.filter(*kind));
     match heading::<L::Protocol>(blank.raw_id()) {
-        Some(Heading::Module) => true,
-        Some(Heading::Either) => shows().any(|filter| filter.matches(blank)),
-        Some(Heading::Controller) | None => false,
+        Heading::Module => true,
+        Heading::Either => shows().any(|filter| filter.matches(blank)),
+        Heading::Controller | Heading::Neither => false,
     }
 }

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::long::{Elements, LongPayload, LongSignal};
-use crate::plumbing::{Address, Decode, Headed, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Decode, Headed, Heading, Incoming, Pattern, Task, Who};
 use crate::{
     Access, AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Payload, Problem, Received,
     Signal,
@@ -44,7 +44,7 @@ impl IdentifierFields for Identifier {
     const TO_RAW: fn(Self) -> u32 = |Self(id)| id;
 
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        if TO_HOST.of(id) == 0 { frame.to_module() } else { frame.to_controller() }
+        if TO_HOST.of(id) == 0 { frame.to(Heading::Module) } else { frame.to(Heading::Controller) }
     }
 }
 

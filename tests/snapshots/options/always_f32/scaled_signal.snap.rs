@@ -58,12 +58,12 @@ impl IdentifierFields for Identifier {
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
         match Self::TARGET.byte(id) {
             0xF0 => match Self::SOURCE.byte(id) {
-                0xF0 => frame.to_neither(),
-                _ => frame.to_controller(),
+                0xF0 => frame.to(Heading::Neither),
+                _ => frame.to(Heading::Controller),
             },
             _ => match Self::SOURCE.byte(id) {
-                0xF0 => frame.to_module(),
-                _ => frame.to_neither(),
+                0xF0 => frame.to(Heading::Module),
+                _ => frame.to(Heading::Neither),
             },
         }
     }
@@ -274,6 +274,7 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[MODULE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const IN_ONE_PLACE: bool = true;
 
     fn way(shown: &Shown) -> Option<Way> {
         Way::best([
@@ -297,26 +298,14 @@ impl Protocol for Message {
     }
 
     #[inline(always)]
-    fn request(frame: &Incoming) -> Result<Received, Problem> {
+    fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x0012 => frame.request(&SetOutput::WRITE, Self::SetOutput(frame.values())),
+            0x0012 => frame.both(&SetOutput::WRITE, Self::SetOutput(frame.values())),
             _ => frame.unknown(),
         }
     }
 
-    #[inline(always)]
-    fn reply(frame: &Incoming) -> Result<Received, Problem> {
-        match frame.id(Identifier::COMMAND) {
-            0x0012 => frame.reply(&SetOutput::WRITE, Self::SetOutput(frame.values())),
-            _ => frame.unknown(),
-        }
-    }
-
-    fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x0012 { &[8] } else { &[] }
-    }
-
-    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+    fn lengths(frame: &Incoming) -> &'static [u8] {
         if frame.id(Identifier::COMMAND) == 0x0012 { &[8] } else { &[] }
     }
 

@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 102] = [
+const TAKEN: [&str; 103] = [
     "Access",
     "Address",
     "AddressType",
@@ -45,6 +45,7 @@ const TAKEN: [&str; 102] = [
     "From",
     "Hash",
     "Headed",
+    "Heading",
     "IdFilter",
     "Identifier",
     "IdentifierFields",

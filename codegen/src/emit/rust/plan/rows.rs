@@ -62,6 +62,7 @@ pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
 }
 
 /// The outcome of frames with one of these sets of constants.
+#[derive(PartialEq)]
 pub struct Arm<T> {
     /// The sets.
     pub sets: Vec<Constants>,
