@@ -72,7 +72,7 @@ pub const BATTERY_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Group. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Group {
     /// 0: `none`.
     None,
@@ -81,6 +81,8 @@ pub enum Group {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Group {}
 
 impl Group {
     /// Returns the value that stands for a raw number, whether it has a name or not.

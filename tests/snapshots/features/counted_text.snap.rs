@@ -68,7 +68,7 @@ pub const MOTOR_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Remark language. Section 4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum RemarkLanguage {
     /// 1: `english`.
     English,
@@ -77,6 +77,8 @@ pub enum RemarkLanguage {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for RemarkLanguage {}
 
 impl RemarkLanguage {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -64,7 +64,7 @@ pub const CYCLIC_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Conditions pack. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ConditionsPack {
     /// 0: `off`.
     Off,
@@ -73,6 +73,8 @@ pub enum ConditionsPack {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ConditionsPack {}
 
 impl ConditionsPack {
     /// Returns the value that stands for a raw number, whether it has a name or not.

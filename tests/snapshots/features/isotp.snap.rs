@@ -249,7 +249,7 @@ pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[So
     .from_controller();
 
 /// How the message goes on. Section 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum TpFlowControlStatus {
     /// 0: `proceed`.
     Proceed,
@@ -260,6 +260,8 @@ pub enum TpFlowControlStatus {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for TpFlowControlStatus {}
 
 impl TpFlowControlStatus {
     /// Returns the value that stands for a raw number, whether it has a name or not.

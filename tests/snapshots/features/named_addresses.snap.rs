@@ -185,7 +185,7 @@ pub const SWITCH_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Switch relay power. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum SwitchRelayPower {
     /// 0: `off`.
     Off,
@@ -194,6 +194,8 @@ pub enum SwitchRelayPower {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for SwitchRelayPower {}
 
 impl SwitchRelayPower {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -142,7 +142,7 @@ pub const SINGLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Power. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -151,6 +151,8 @@ pub enum Power {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Power {}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -197,7 +199,7 @@ impl Word for Power {
 }
 
 /// Switch lamp. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum SwitchLamp {
     /// 2570: `dark`.
     Dark,
@@ -206,6 +208,8 @@ pub enum SwitchLamp {
     /// A value without a name; it is sent as it is.
     Unknown(u16),
 }
+
+impl Eq for SwitchLamp {}
 
 impl SwitchLamp {
     /// Returns the value that stands for a raw number, whether it has a name or not.

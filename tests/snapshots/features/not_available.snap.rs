@@ -142,7 +142,7 @@ pub const VEHICLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Limits lamp. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum LimitsLamp {
     /// 0: `off`.
     Off,
@@ -153,6 +153,8 @@ pub enum LimitsLamp {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for LimitsLamp {}
 
 impl LimitsLamp {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -142,7 +142,7 @@ pub const SINGLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Control mode. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ControlMode {
     /// 0: `local`.
     Local,
@@ -151,6 +151,8 @@ pub enum ControlMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ControlMode {}
 
 impl ControlMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -197,7 +199,7 @@ impl Word for ControlMode {
 }
 
 /// Control power. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ControlPower {
     /// 0: `running`.
     Running,
@@ -206,6 +208,8 @@ pub enum ControlPower {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ControlPower {}
 
 impl ControlPower {
     /// Returns the value that stands for a raw number, whether it has a name or not.

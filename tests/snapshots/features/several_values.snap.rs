@@ -162,7 +162,7 @@ pub const ABORT_ACCESS: Access = Access::new("abort", &[Some(Who::One)])
     .reply(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x80));
 
 /// Aborted value. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AbortedValue {
     /// 100728834: `read_only`.
     ReadOnly,
@@ -171,6 +171,8 @@ pub enum AbortedValue {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for AbortedValue {}
 
 impl AbortedValue {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -154,7 +154,7 @@ pub struct Within<M> {
 }
 
 /// Set mode mode. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum SetModeMode {
     /// 0: `idle`.
     Idle,
@@ -163,6 +163,8 @@ pub enum SetModeMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for SetModeMode {}
 
 impl SetModeMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -227,7 +227,7 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Whether the battery is charging or discharging. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum OperatingState {
     /// 0: `stationary`.
     Stationary,
@@ -238,6 +238,8 @@ pub enum OperatingState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for OperatingState {}
 
 impl OperatingState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -290,7 +292,7 @@ impl Word for OperatingState {
 }
 
 /// Whether something is connected. Section 5.5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Connection {
     /// 0: `disconnected`.
     Disconnected,
@@ -299,6 +301,8 @@ pub enum Connection {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Connection {}
 
 impl Connection {
     /// Returns the value that stands for a raw number, whether it has a name or not.

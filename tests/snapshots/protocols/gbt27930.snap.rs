@@ -290,7 +290,7 @@ pub const TP_OF_CONTROLLER_ACCESS_2: Access =
     Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(&FRAME).from_controller();
 
 /// Whether the charger has recognised the BMS. Section 5.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Recognition {
     /// 0: `not_recognised`.
     NotRecognised,
@@ -299,6 +299,8 @@ pub enum Recognition {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Recognition {}
 
 impl Recognition {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -346,7 +348,7 @@ impl Word for Recognition {
 }
 
 /// Type of the battery. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum BatteryType {
     /// 1: `lead_acid`.
     LeadAcid,
@@ -369,6 +371,8 @@ pub enum BatteryType {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for BatteryType {}
 
 impl BatteryType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -439,7 +443,7 @@ impl Word for BatteryType {
 }
 
 /// Whether the battery is leased or belongs to the vehicle. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Ownership {
     /// 0: `leased`.
     Leased,
@@ -450,6 +454,8 @@ pub enum Ownership {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Ownership {}
 
 impl Ownership {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -502,7 +508,7 @@ impl Word for Ownership {
 ///
 /// Erratum X19: printed is "`0xFF` as invalid in the standard, and only 0x00 and `0xAA` in A and D",
 /// used is "three values", because the examples have frames with `0xFF`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Readiness {
     /// 0: `not_ready`.
     NotReady,
@@ -513,6 +519,8 @@ pub enum Readiness {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Readiness {}
 
 impl Readiness {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -562,7 +570,7 @@ impl Word for Readiness {
 }
 
 /// Charging mode. Section 5.10.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ChargingMode {
     /// 1: `constant_voltage`.
     ConstantVoltage,
@@ -573,6 +581,8 @@ pub enum ChargingMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ChargingMode {}
 
 impl ChargingMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -627,7 +637,7 @@ impl Word for ChargingMode {
 /// Whether the charger goes on. Section 5.12.
 ///
 /// `pause` says that it is going to stop its output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ChargerPermission {
     /// 0: `pause`.
     Pause,
@@ -638,6 +648,8 @@ pub enum ChargerPermission {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ChargerPermission {}
 
 impl ChargerPermission {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -687,7 +699,7 @@ impl Word for ChargerPermission {
 }
 
 /// Whether a value is within its limits. Section 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum LevelState {
     /// 0: `normal`.
     Normal,
@@ -700,6 +712,8 @@ pub enum LevelState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for LevelState {}
 
 impl LevelState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -755,7 +769,7 @@ impl Word for LevelState {
 }
 
 /// Whether the charging current is too high. Section 3.6, 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum OvercurrentState {
     /// 0: `normal`.
     Normal,
@@ -768,6 +782,8 @@ pub enum OvercurrentState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for OvercurrentState {}
 
 impl OvercurrentState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -823,7 +839,7 @@ impl Word for OvercurrentState {
 }
 
 /// Whether a temperature is too high. Section 3.6, 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeatState {
     /// 0: `normal`.
     Normal,
@@ -836,6 +852,8 @@ pub enum HeatState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeatState {}
 
 impl HeatState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -891,7 +909,7 @@ impl Word for HeatState {
 }
 
 /// Whether something is abnormal. Section 3.6, 5.13, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AbnormalState {
     /// 0: `normal`.
     Normal,
@@ -904,6 +922,8 @@ pub enum AbnormalState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for AbnormalState {}
 
 impl AbnormalState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -959,7 +979,7 @@ impl Word for AbnormalState {
 }
 
 /// Whether the BMS allows charging. Section 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum BmsPermission {
     /// 0: `prohibited`.
     Prohibited,
@@ -970,6 +990,8 @@ pub enum BmsPermission {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for BmsPermission {}
 
 impl BmsPermission {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1022,7 +1044,7 @@ impl Word for BmsPermission {
 }
 
 /// Whether a target is reached. Section 3.6, 5.17.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ReachedState {
     /// 0: `not_reached`.
     NotReached,
@@ -1035,6 +1057,8 @@ pub enum ReachedState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ReachedState {}
 
 impl ReachedState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1090,7 +1114,7 @@ impl Word for ReachedState {
 }
 
 /// Whether this stopped the charging. Section 3.6, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum StopState {
     /// 0: `normal`.
     Normal,
@@ -1103,6 +1127,8 @@ pub enum StopState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for StopState {}
 
 impl StopState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1158,7 +1184,7 @@ impl Word for StopState {
 }
 
 /// Whether there is a fault. Section 3.6, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum FaultState {
     /// 0: `normal`.
     Normal,
@@ -1171,6 +1197,8 @@ pub enum FaultState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for FaultState {}
 
 impl FaultState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1226,7 +1254,7 @@ impl Word for FaultState {
 }
 
 /// Whether the demand is exceeded. Section 3.6, 5.17.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ExcessState {
     /// 0: `normal`.
     Normal,
@@ -1239,6 +1267,8 @@ pub enum ExcessState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ExcessState {}
 
 impl ExcessState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1294,7 +1324,7 @@ impl Word for ExcessState {
 }
 
 /// Whether two values do not match. Section 3.6, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum MismatchState {
     /// 0: `normal`.
     Normal,
@@ -1307,6 +1337,8 @@ pub enum MismatchState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for MismatchState {}
 
 impl MismatchState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1362,7 +1394,7 @@ impl Word for MismatchState {
 }
 
 /// Whether the wait for a message timed out. Section 3.6, 5.21, 5.22.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum TimeoutState {
     /// 0: `normal`.
     Normal,
@@ -1375,6 +1407,8 @@ pub enum TimeoutState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for TimeoutState {}
 
 impl TimeoutState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1430,13 +1464,15 @@ impl Word for TimeoutState {
 }
 
 /// Order of the bytes of the number. Section 6.1, 6.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum TroubleCodeConversion {
     /// 0: `intel_order`.
     IntelOrder,
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for TroubleCodeConversion {}
 
 impl TroubleCodeConversion {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1481,7 +1517,7 @@ impl Word for TroubleCodeConversion {
 }
 
 /// Number of a parameter group. Section 2.2, 4, 6.1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Pgn {
     /// 256: `crm`.
     Crm,
@@ -1546,6 +1582,8 @@ pub enum Pgn {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for Pgn {}
 
 impl Pgn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1679,7 +1717,7 @@ impl Word for Pgn {
 }
 
 /// Answer to a request. Section 6.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Acknowledgment {
     /// 0: `positive`.
     Positive,
@@ -1694,6 +1732,8 @@ pub enum Acknowledgment {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Acknowledgment {}
 
 impl Acknowledgment {
     /// Returns the value that stands for a raw number, whether it has a name or not.

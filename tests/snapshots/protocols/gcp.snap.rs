@@ -510,7 +510,7 @@ pub struct Within<M> {
 ///
 /// Erratum C21: printed is "Start of processing for error code 0x07", used is "starting up", because
 /// 3.2.4 says that modules use this code in the start-up phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ErrorCode {
     /// 0: `normal`.
     Normal,
@@ -523,6 +523,8 @@ pub enum ErrorCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ErrorCode {}
 
 impl ErrorCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -580,7 +582,7 @@ impl Word for ErrorCode {
 /// Mode of the DC input. Section 3.3.
 ///
 /// `dcdc` has the green LED on and `mppt` has it flashing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum OperatingMode {
     /// 160: `dcdc`.
     Dcdc,
@@ -589,6 +591,8 @@ pub enum OperatingMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for OperatingMode {}
 
 impl OperatingMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -635,7 +639,7 @@ impl Word for OperatingMode {
 }
 
 /// Slow startup. Section 3.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum WalkIn {
     /// 0: `disabled`.
     Disabled,
@@ -644,6 +648,8 @@ pub enum WalkIn {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for WalkIn {}
 
 impl WalkIn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -695,7 +701,7 @@ impl Word for WalkIn {
 /// examples, with LED off as the last text", used is "1 flashing, 0 normal", because two requests and
 /// two replies agree against one row, whose words are those of 0x1A; an LED that no longer flashes need
 /// not be dark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Led {
     /// 0: `normal`.
     Normal,
@@ -704,6 +710,8 @@ pub enum Led {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Led {}
 
 impl Led {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -752,7 +760,7 @@ impl Word for Led {
 /// Operational readiness. Section 3.3.
 ///
 /// 0 is on, so all-zero data switch modules on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -761,6 +769,8 @@ pub enum Power {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Power {}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.

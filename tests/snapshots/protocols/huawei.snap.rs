@@ -584,7 +584,7 @@ const FAN_DUTY_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 ];
 
 /// Command. Section 2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum CommandCode {
     /// 16: `start_up_10`.
     StartUp10,
@@ -605,6 +605,8 @@ pub enum CommandCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for CommandCode {}
 
 impl CommandCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -676,7 +678,7 @@ impl Word for CommandCode {
 /// Erratum Z20: printed is "0 as from the PSU (2.1), and 1 in two of the frames that a PSU sends by
 /// itself", used is "reports of a PSU, each with its own pattern", because their command and register
 /// tell them from requests; what the bit means there is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum DirectionCode {
     /// 0: `from_psu`.
     FromPsu,
@@ -685,6 +687,8 @@ pub enum DirectionCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for DirectionCode {}
 
 impl DirectionCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -735,7 +739,7 @@ impl Word for DirectionCode {
 /// Erratum Z3: printed is "1081407E as the last frame of the data reply in P and C, 1081407F for all
 /// frames in X", used is "1081407E for the last; the alarms may come in either", because 2.1 has 0 for
 /// the last frame, and two sources print such frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum MoreCode {
     /// 0: `last`.
     Last,
@@ -744,6 +748,8 @@ pub enum MoreCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for MoreCode {}
 
 impl MoreCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -800,7 +806,7 @@ impl Word for MoreCode {
 ///
 /// Erratum N1: printed is "0 and 2 as status, and no other", used is "any other as an error without a
 /// name", because nothing else is said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeaderStatus {
     /// 0: `ok`.
     Ok,
@@ -809,6 +815,8 @@ pub enum HeaderStatus {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeaderStatus {}
 
 impl HeaderStatus {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -855,7 +863,7 @@ impl Word for HeaderStatus {
 }
 
 /// Whether the limit holds. Section 7.1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum LimitState {
     /// 0: `inactive`.
     Inactive,
@@ -864,6 +872,8 @@ pub enum LimitState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for LimitState {}
 
 impl LimitState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -910,7 +920,7 @@ impl Word for LimitState {
 }
 
 /// Whether the PSU is on or in standby. Section 7.1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum SwitchState {
     /// 0: `on`.
     On,
@@ -919,6 +929,8 @@ pub enum SwitchState {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for SwitchState {}
 
 impl SwitchState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -970,7 +982,7 @@ impl Word for SwitchState {
 ///
 /// Erratum Z19: printed is "2 as persistent in P, and in O 1 as maximum on-line and 2 as maximum
 /// off-line", used is "persistent", because O is an older revision of P.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum FanControl {
     /// 0: `auto`.
     Auto,
@@ -981,6 +993,8 @@ pub enum FanControl {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for FanControl {}
 
 impl FanControl {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1035,7 +1049,7 @@ impl Word for FanControl {
 /// Whether the PSU is ready. Section 9.2.
 ///
 /// Ready means that AC is present and that there is no fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Readiness {
     /// 0: `ready`.
     Ready,
@@ -1044,6 +1058,8 @@ pub enum Readiness {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Readiness {}
 
 impl Readiness {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1092,7 +1108,7 @@ impl Word for Readiness {
 /// Whether the PSU gives voltage. Section 9.2.
 ///
 /// It is not active while it boots and in standby.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Activity {
     /// 0: `not_active`.
     NotActive,
@@ -1101,6 +1117,8 @@ pub enum Activity {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Activity {}
 
 impl Activity {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -537,7 +537,7 @@ const OUTPUT_CURRENT_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
 ///
 /// Codes changed in V1.07, which ones is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ErrorCode {
     /// 0: `normal`.
     Normal,
@@ -552,6 +552,8 @@ pub enum ErrorCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ErrorCode {}
 
 impl ErrorCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -610,7 +612,7 @@ impl Word for ErrorCode {
 }
 
 /// Soft start. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum WalkIn {
     /// 0: `disabled`.
     Disabled,
@@ -619,6 +621,8 @@ pub enum WalkIn {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for WalkIn {}
 
 impl WalkIn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -665,7 +669,7 @@ impl Word for WalkIn {
 }
 
 /// Green LED. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Led {
     /// 0: `normal`.
     Normal,
@@ -674,6 +678,8 @@ pub enum Led {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Led {}
 
 impl Led {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -720,7 +726,7 @@ impl Word for Led {
 }
 
 /// Sleep. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Sleep {
     /// 0: `awake`.
     Awake,
@@ -729,6 +735,8 @@ pub enum Sleep {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Sleep {}
 
 impl Sleep {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -778,7 +786,7 @@ impl Word for Sleep {
 ///
 /// 0 is on, so all-zero data switch modules on; one without a set-point since power-on then delivers
 /// its default, see `models`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -787,6 +795,8 @@ pub enum Power {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Power {}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -836,7 +846,7 @@ impl Word for Power {
 ///
 /// Automatic by default, with the group from the DIP switch; such addresses follow the serial numbers
 /// and stay until a module is exchanged, added or removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AddressMode {
     /// 0: `automatic`.
     Automatic,
@@ -845,6 +855,8 @@ pub enum AddressMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for AddressMode {}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.

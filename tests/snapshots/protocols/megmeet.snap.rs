@@ -392,7 +392,7 @@ const OVERVOLTAGE_POINT_LIMITS: &[(u8, Option<(f64, f64)>)] =
 /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
 /// what is kept in the EEPROM", because only 0x80 with 0x100 has an example; configuration and EEPROM
 /// go together, and nothing forbids 0x80; whether it stores too is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum CommandCode {
     /// 64: `real_time_data`.
     RealTimeData,
@@ -407,6 +407,8 @@ pub enum CommandCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for CommandCode {}
 
 impl CommandCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -471,7 +473,7 @@ impl Word for CommandCode {
 ///
 /// Erratum M34: printed is "the node and the main node", used is "module and controller", because the
 /// notes of 3.1 to 3.3 have them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum SenderCode {
     /// 0: `module`.
     Module,
@@ -480,6 +482,8 @@ pub enum SenderCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for SenderCode {}
 
 impl SenderCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -532,7 +536,7 @@ impl Word for SenderCode {
 /// Erratum M1: printed is "CNT 0x0 and 0x1, both as the last part of the data", used is "0 for the last
 /// frame, 1 if more follow", because the next sentence has 0 for a single frame, and 3.1 to 3.3 explain
 /// 0 as no subsequent frames and 0/1 as whether there are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum MoreCode {
     /// 0: `last`.
     Last,
@@ -541,6 +545,8 @@ pub enum MoreCode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for MoreCode {}
 
 impl MoreCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -592,7 +598,7 @@ impl Word for MoreCode {
 ///
 /// Erratum M33: printed is "electronic tags and electronic label", used is "label for both", because an
 /// error of reading belongs to one of writing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeaderErrorType {
     /// 0: `normal`.
     Normal,
@@ -615,6 +621,8 @@ pub enum HeaderErrorType {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeaderErrorType {}
 
 impl HeaderErrorType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -685,7 +693,7 @@ impl Word for HeaderErrorType {
 }
 
 /// Power supply. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Supply {
     /// 0: `single`.
     Single,
@@ -694,6 +702,8 @@ pub enum Supply {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Supply {}
 
 impl Supply {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -740,7 +750,7 @@ impl Word for Supply {
 }
 
 /// Phases of the AC input. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Phases {
     /// 0: `single_phase`.
     SinglePhase,
@@ -749,6 +759,8 @@ pub enum Phases {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Phases {}
 
 impl Phases {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -796,13 +808,15 @@ impl Word for Phases {
 }
 
 /// Type of the input voltage. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum InputType {
     /// 3: `ac_and_other`.
     AcAndOther,
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for InputType {}
 
 impl InputType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -847,7 +861,7 @@ impl Word for InputType {
 }
 
 /// Type of the output voltage. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum OutputType {
     /// 0: `v48`.
     V48,
@@ -856,6 +870,8 @@ pub enum OutputType {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for OutputType {}
 
 impl OutputType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -902,7 +918,7 @@ impl Word for OutputType {
 }
 
 /// Efficiency in percent. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Efficiency {
     /// 1: `from_90_to_91`.
     From90To91,
@@ -927,6 +943,8 @@ pub enum Efficiency {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Efficiency {}
 
 impl Efficiency {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1000,7 +1018,7 @@ impl Word for Efficiency {
 }
 
 /// Power switch (0 is on). Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -1009,6 +1027,8 @@ pub enum Power {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Power {}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1055,7 +1075,7 @@ impl Word for Power {
 }
 
 /// Reset of a lockout. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Reset {
     /// 0: `forbid`.
     Forbid,
@@ -1064,6 +1084,8 @@ pub enum Reset {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Reset {}
 
 impl Reset {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1110,7 +1132,7 @@ impl Word for Reset {
 }
 
 /// Flashing of the green light. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Flicker {
     /// 0: `forbid`.
     Forbid,
@@ -1119,6 +1141,8 @@ pub enum Flicker {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Flicker {}
 
 impl Flicker {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1168,7 +1192,7 @@ impl Word for Flicker {
 ///
 /// Erratum M44: printed is "1: Going on, for address assignment control", used is "assign", because 4
 /// starts the assignment with it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Assignment {
     /// 0: `forbid`.
     Forbid,
@@ -1177,6 +1201,8 @@ pub enum Assignment {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Assignment {}
 
 impl Assignment {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1225,7 +1251,7 @@ impl Word for Assignment {
 /// State of a light. Section 2.2.3.
 ///
 /// Slow is 0.5 Hz and quick is 4 Hz; with `auto` the module itself controls the light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Light {
     /// 0: `auto`.
     Auto,
@@ -1238,6 +1264,8 @@ pub enum Light {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Light {}
 
 impl Light {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1289,7 +1317,7 @@ impl Word for Light {
 }
 
 /// Shielding of an alarm. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Shielding {
     /// 0: `no_shield`.
     NoShield,
@@ -1298,6 +1326,8 @@ pub enum Shielding {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Shielding {}
 
 impl Shielding {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1349,7 +1379,7 @@ impl Word for Shielding {
 /// `hardware` and else software addresses; with `hardware` a module whose address conflicts or that has
 /// no address board does not start, and its yellow light flashes at 4 Hz; in the other modes it works
 /// without the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AddressMode {
     /// 0: `hardware`.
     Hardware,
@@ -1360,6 +1390,8 @@ pub enum AddressMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for AddressMode {}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1413,7 +1445,7 @@ impl Word for AddressMode {
 /// Erratum M13: printed is "type V, one byte, with `0xAAAA` and 0x5555", used is "type VII, two bytes",
 /// because the values have two bytes; they end where a byte of type V stands, and both of their bytes
 /// are alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AutoBoot {
     /// 43690: `automatic`.
     Automatic,
@@ -1422,6 +1454,8 @@ pub enum AutoBoot {
     /// A value without a name; it is sent as it is.
     Unknown(u16),
 }
+
+impl Eq for AutoBoot {}
 
 impl AutoBoot {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1468,7 +1502,7 @@ impl Word for AutoBoot {
 }
 
 /// Scan for the maximum power point. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Scan {
     /// 0: `disabled`.
     Disabled,
@@ -1477,6 +1511,8 @@ pub enum Scan {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Scan {}
 
 impl Scan {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -464,7 +464,7 @@ pub const SET_ACCESS_2: Access =
 ///
 /// Erratum X6: printed is "03, 10, 41 and 42 without a radix", used is "hexadecimal", because 41 and 42
 /// are called 0x41 and 0x42 below the examples, where all bytes are hexadecimal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeaderFunction {
     /// 3: `set`.
     Set,
@@ -477,6 +477,8 @@ pub enum HeaderFunction {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeaderFunction {}
 
 impl HeaderFunction {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -534,7 +536,7 @@ impl Word for HeaderFunction {
 /// Erratum X7: printed is "F0 for normal, others for a fault; of these only F2, in replies to a setting
 /// that failed", used is "F2 as failed, others without a name", because no other number is printed; all
 /// but F0 get the note `error_code`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeaderResult {
     /// 240: `normal`.
     Normal,
@@ -543,6 +545,8 @@ pub enum HeaderResult {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeaderResult {}
 
 impl HeaderResult {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -594,7 +598,7 @@ impl Word for HeaderResult {
 ///
 /// Erratum X36: printed is "dial setting, dial mode and dial-up address beside DIP switch", used is
 /// "DIP switch", because 4 uses dial mode and DIP switch for the same mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum AddressMode {
     /// 0: `automatic`.
     Automatic,
@@ -603,6 +607,8 @@ pub enum AddressMode {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for AddressMode {}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -649,7 +655,7 @@ impl Word for AddressMode {
 }
 
 /// Power switch (0 is start-up). Section 2.3.1, 3.1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Power {
     /// 0: `start_up`.
     StartUp,
@@ -658,6 +664,8 @@ pub enum Power {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for Power {}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -704,7 +712,7 @@ impl Word for Power {
 }
 
 /// Reset of a protection. Section 3.1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Reset {
     /// 0: `disabled`.
     Disabled,
@@ -713,6 +721,8 @@ pub enum Reset {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for Reset {}
 
 impl Reset {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -762,7 +772,7 @@ impl Word for Reset {
 ///
 /// Erratum X29: printed is "relevance permission of module output overvoltage protection", used is "the
 /// word as printed", because it may be that modules trip together, but nothing else is said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Relevance {
     /// 0: `enabled`.
     Enabled,
@@ -771,6 +781,8 @@ pub enum Relevance {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for Relevance {}
 
 impl Relevance {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -819,7 +831,7 @@ impl Word for Relevance {
 /// Input mode. Section 3.1.
 ///
 /// AC is the default.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum InputMode {
     /// 1: `ac`.
     Ac,
@@ -828,6 +840,8 @@ pub enum InputMode {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for InputMode {}
 
 impl InputMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -879,7 +893,7 @@ impl Word for InputMode {
 ///
 /// Erratum X17: printed is "the modes 1, 2, 3 and 5", used is "no name for 4", because nothing is said
 /// about it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ActiveInput {
     /// 1: `single_phase_ac`.
     SinglePhaseAc,
@@ -892,6 +906,8 @@ pub enum ActiveInput {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for ActiveInput {}
 
 impl ActiveInput {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -276,7 +276,7 @@ pub const REPORT_B_ACCESS: Access =
     Access::new("report_b", &[None, None, None, None, Some(Who::One)]).report(&FRAME.id(Identifier::FUNCTION, 0x2));
 
 /// What a request wants, or what became of it. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum HeaderOperation {
     /// 64: `read`.
     Read,
@@ -291,6 +291,8 @@ pub enum HeaderOperation {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for HeaderOperation {}
 
 impl HeaderOperation {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -349,7 +351,7 @@ impl Word for HeaderOperation {
 }
 
 /// State of the output. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum MeasurementAOutput {
     /// 0: `off`.
     Off,
@@ -358,6 +360,8 @@ pub enum MeasurementAOutput {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for MeasurementAOutput {}
 
 impl MeasurementAOutput {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -404,7 +408,7 @@ impl Word for MeasurementAOutput {
 }
 
 /// Mode of operation. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ModeValue {
     /// 0: `standby`.
     Standby,
@@ -419,6 +423,8 @@ pub enum ModeValue {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ModeValue {}
 
 impl ModeValue {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -477,7 +483,7 @@ impl Word for ModeValue {
 }
 
 /// Input. Section 4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Input {
     /// 0: `none`.
     None,
@@ -488,6 +494,8 @@ pub enum Input {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Input {}
 
 impl Input {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -536,7 +544,7 @@ impl Word for Input {
 }
 
 /// Output switch. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum OutputCommand {
     /// 1: `on`.
     On,
@@ -545,6 +553,8 @@ pub enum OutputCommand {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for OutputCommand {}
 
 impl OutputCommand {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -591,7 +601,7 @@ impl Word for OutputCommand {
 }
 
 /// Why a request is refused. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum RefusalReason {
     /// 1: `no_such_index`.
     NoSuchIndex,
@@ -602,6 +612,8 @@ pub enum RefusalReason {
     /// A value without a name; it is sent as it is.
     Unknown(u32),
 }
+
+impl Eq for RefusalReason {}
 
 impl RefusalReason {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -654,7 +666,7 @@ impl Word for RefusalReason {
 }
 
 /// Whether outputs may be on. Section 6.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum KeepAliveOutputs {
     /// 0: `off`.
     Off,
@@ -663,6 +675,8 @@ pub enum KeepAliveOutputs {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for KeepAliveOutputs {}
 
 impl KeepAliveOutputs {
     /// Returns the value that stands for a raw number, whether it has a name or not.

@@ -328,7 +328,7 @@ const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 ///
 /// Erratum T23: printed is "two values each of mode and operation, and no bits 9 to 15 of the faults",
 /// used is "raw values and bits without a name, kept with a note", because nothing is said about them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum ControlMode {
     /// 0: `local`.
     Local,
@@ -337,6 +337,8 @@ pub enum ControlMode {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for ControlMode {}
 
 impl ControlMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -389,7 +391,7 @@ impl Word for ControlMode {
 ///
 /// Erratum T23: printed is "two values each of mode and operation, and no bits 9 to 15 of the faults",
 /// used is "raw values and bits without a name, kept with a note", because nothing is said about them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Operation {
     /// 0: `off`.
     Off,
@@ -398,6 +400,8 @@ pub enum Operation {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Operation {}
 
 impl Operation {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -444,7 +448,7 @@ impl Word for Operation {
 }
 
 /// Advice on replacement. Section 3.3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Hash)]
 pub enum Advice {
     /// 0: `none`.
     None,
@@ -453,6 +457,8 @@ pub enum Advice {
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
+
+impl Eq for Advice {}
 
 impl Advice {
     /// Returns the value that stands for a raw number, whether it has a name or not.

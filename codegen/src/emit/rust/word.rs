@@ -7,6 +7,8 @@ use super::derives::Derives;
 use super::plan::word::{Enumeration, Packed, PackedPart, Piece, StatusBit, StatusWord, Value};
 
 /// Emits an enum with a variant a name, and one for all other values.
+///
+/// `Eq` is not derived, since that would be a function that does nothing in each of many enums.
 pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
     let Enumeration { name, comment, raw, values, unknown } = enumeration;
     let optional = derives.word(name);
@@ -16,12 +18,14 @@ pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
     let texts = values.iter().map(|value| &value.name);
     quote! {
         #comment
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Hash)]
         pub enum #name {
             #(#definitions)*
             /// A value without a name; it is sent as it is.
             #unknown(#raw),
         }
+
+        impl Eq for #name {}
 
         impl #name {
             /// Returns the value that stands for a raw number, whether it has a name or not.
