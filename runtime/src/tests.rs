@@ -250,6 +250,13 @@ fn problems_are_tested_in_order() {
 }
 
 #[test]
+fn each_direction_has_messages_and_lengths_of_its_own() {
+    let problem = |id| decode(&Frame::new_raw(id, true, [0; 8], 3)).map(|received| received.kind()).expect_err("short");
+    assert_eq!(problem(0x010B_F003), Problem::Length);
+    assert_eq!(problem(0x010B_03F0), Problem::UnknownMessage);
+}
+
+#[test]
 fn of_several_messages_the_length_and_then_the_addresses_choose_and_the_first_wins_a_tie() {
     let access = |id, length| {
         let received = decode(&Frame::new_raw(id, true, [0; 8], length)).expect("a known frame");

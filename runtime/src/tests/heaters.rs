@@ -235,7 +235,7 @@ impl Protocol for Message {
     }
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
-        Self::request_lengths(frame)
+        if frame.id(COMMAND) == 0x0B { &[4] } else { Self::request_lengths(frame) }
     }
 
     fn way(shown: &Shown) -> Option<Way> {

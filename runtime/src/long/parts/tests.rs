@@ -116,7 +116,7 @@ struct Cells {
 }
 
 impl Cells {
-    const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(0, 1)));
+    const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(0, 1)).limits(0, 60_000));
     const VOLTAGE: LongSignal<u16> = LongSignal::new(2, Signal::new("voltage", Place::bytes(0, 1))).every(2);
 }
 
@@ -426,4 +426,12 @@ fn a_message_that_ends_by_silence_is_whole_with_what_it_has() {
     assert!(assembler.receive(&two, 360).next().is_none());
     assert_eq!(said(assembler.receive(&one, 370).next()), ([10, 20, 30].into(), false));
     assert_eq!(said(assembler.finish()), ([10].into(), false));
+}
+
+#[test]
+fn values_keep_to_limits_on_the_way_to_a_module_only() {
+    let cells = Cells { cycles: 60_001, ..cells(&[3300]) };
+    let frames = |id| cells.frames(&Frame::new_raw(id, false, [0; 8], 8)).map(|_| ());
+    assert!(matches!(frames(0x41), Err(Error::Value(_))));
+    assert_eq!(frames(0x51), Ok(()));
 }
