@@ -6,7 +6,7 @@ use super::message::Message;
 use super::naming::ident;
 use super::rows::{Arm, Row, joined, lengths, rows};
 use super::types::Types;
-use crate::model::{Course, FrameId, MessageId, Protocol, Recognition as Plan, Table};
+use crate::model::{self, Course, FrameId, MessageId, Protocol, Table};
 
 /// How frames are recognised.
 pub struct Recognition {
@@ -87,7 +87,7 @@ pub struct Planner<'a> {
 impl Planner<'_> {
     /// Plans how frames are recognised: requests and replies together, if they have the same selectors.
     pub fn recognition(&self) -> Recognition {
-        let Plan { requests, replies, either, alike, .. } = &self.protocol.recognition;
+        let model::Recognition { requests, replies, either, alike, .. } = &self.protocol.recognition;
         let courses = [
             ("request", "request_lengths", requests),
             ("reply", "reply_lengths", replies),
