@@ -18,8 +18,6 @@ pub struct Access {
     has_values: bool,
     is_from_controller: bool,
     answers: &'static [Option<Who>],
-    /// The modes in which somebody answers, as bits from the lowest on. Those beyond 8 have none.
-    offered: u8,
     set: Option<&'static str>,
     request: Option<&'static Filter>,
     reply: Option<&'static Filter>,
@@ -34,7 +32,6 @@ impl Access {
             has_values: false,
             is_from_controller: false,
             answers,
-            offered: offered(answers),
             set: None,
             request: None,
             reply: None,
@@ -82,7 +79,7 @@ impl Access {
     /// Returns how a message travels by this access, with eight data bytes.
     #[must_use]
     pub const fn of(&'static self, message: &'static str) -> Exchange {
-        let Self { offered, .. } = *self;
+        let offered = offered(self.answers);
         Exchange { access: self, message, own: Required::NOTHING, length: 8, offered, particulars: None }
     }
 
