@@ -22,13 +22,13 @@ pub type Named<T> = (&'static str, Cases<T>);
 impl Recognition {
     /// Tests whether one choice serves both directions.
     pub fn is_of_both_directions(&self) -> bool {
-        matches!(self.frames.as_slice(), [("recognise", _)])
+        let mut outcomes = self.frames.iter().flat_map(|(_, choice)| choice.outcomes());
+        outcomes.any(|outcome| matches!(outcome, Outcome::Pair(_)))
     }
 
     /// Returns how long frames should be.
     pub fn all_lengths(&self) -> impl Iterator<Item = u8> {
-        let choices = self.lengths.iter().map(|(_, choice)| choice);
-        choices.flat_map(|choice| choice.arms.iter().map(|arm| &arm.outcome).chain(&choice.rest)).flatten().copied()
+        self.lengths.iter().flat_map(|(_, choice)| choice.outcomes()).flatten().copied()
     }
 }
 
@@ -39,6 +39,12 @@ pub struct Cases<T> {
     pub arms: Vec<Arm<T>>,
     /// The outcome of all other frames.
     pub rest: Option<T>,
+}
+
+impl<T> Cases<T> {
+    fn outcomes(&self) -> impl Iterator<Item = &T> {
+        self.arms.iter().map(|arm| &arm.outcome).chain(&self.rest)
+    }
 }
 
 /// What frames can be that show the constants of a row.
