@@ -190,7 +190,7 @@ mod tests {
 
         impl Word for Week {
             type Raw = u64;
-            const LEGEND: Legend<Self> = Legend::Text(1, &[Piece::number::<Bcd<u8>>(Place::byte(0))]);
+            const LEGEND: Legend<u64> = Legend::Text(1, &[Piece::number::<Bcd<u8>>(Place::byte(0))]);
             const FROM_RAW: fn(u64) -> Self = |raw| Self(Raw::from_bits(raw));
             const RAW: fn(Self) -> u64 = |week| week.0.to_bits();
         }

@@ -210,7 +210,7 @@ mod tests {
 
     impl Word for Barcode {
         type Raw = u64;
-        const LEGEND: Legend<Self> = Legend::Text(
+        const LEGEND: Legend<u64> = Legend::Text(
             8,
             &[
                 Piece::digits::<u64>(Self::NUMBER, 12).limits(0, 999_999_999_999),

@@ -80,7 +80,7 @@ pub trait Raw: Copy + Sync + 'static {
 }
 
 /// A raw value that physical values are scaled from.
-pub trait Integer: Raw {}
+pub trait Integer: Raw + PartialEq {}
 
 /// The meaning of a value, for code that does not know its type.
 #[derive(Clone, Copy, Debug, PartialEq)]

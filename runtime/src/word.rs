@@ -13,7 +13,7 @@ pub trait Word: Copy + Sync + PartialEq + 'static {
     /// The integer in the frame.
     type Raw: Integer;
     /// What the integer stands for.
-    const LEGEND: Legend<Self>;
+    const LEGEND: Legend<Self::Raw>;
     /// Returns the value of an integer, even if the legend does not have it.
     const FROM_RAW: fn(Self::Raw) -> Self;
     /// Returns the integer in the frame.
@@ -21,23 +21,22 @@ pub trait Word: Copy + Sync + PartialEq + 'static {
 
     /// Returns the name of a named value, unless it has none.
     fn name(self) -> Option<&'static str> {
-        let bits = self.to_bits();
-        names::<Self>().iter().find(|(value, _)| value.to_bits() == bits).map(|(_, name)| *name)
+        Self::LEGEND.name(Self::RAW(self))
     }
 
     /// Finds a named value by its name.
     fn named(name: &str) -> Option<Self> {
-        names::<Self>().iter().find(|(_, other)| *other == name).map(|(value, _)| *value)
+        Self::LEGEND.named(name).map(Self::FROM_RAW)
     }
 
     /// Returns the set bits of a status word that have a name, the lowest first.
     fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
-        status::set_bits(self.to_bits(), bits::<Self>())
+        status::set_bits(self.to_bits(), Self::LEGEND.bits())
     }
 
     /// Returns the set bits of a status word that have no name.
     fn unknown(self) -> u64 {
-        status::unknown(self.to_bits(), bits::<Self>())
+        status::unknown(self.to_bits(), Self::LEGEND.bits())
     }
 
     /// Returns the text of a packed value, or `None` if that text would not give the same value.
@@ -62,26 +61,36 @@ pub trait Word: Copy + Sync + PartialEq + 'static {
 
 /// What an integer stands for.
 #[derive(Clone, Copy, Debug)]
-pub enum Legend<W: 'static> {
-    /// Every value that has a name.
-    Names(&'static [(W, &'static str)]),
+pub enum Legend<R: 'static> {
+    /// Every number that has a name.
+    Names(&'static [(R, &'static str)]),
     /// Every bit that has a name, the lowest first.
     Bits(&'static [StatusBit]),
     /// The number of bytes, and the pieces of their text.
     Text(u8, &'static [Piece]),
 }
 
-const fn names<W: Word>() -> &'static [(W, &'static str)] {
-    match W::LEGEND {
-        Legend::Names(names) => names,
-        Legend::Bits(_) | Legend::Text(..) => &[],
+impl<R: Integer> Legend<R> {
+    fn name(self, raw: R) -> Option<&'static str> {
+        self.names().iter().find(|(other, _)| *other == raw).map(|(_, name)| *name)
     }
-}
 
-const fn bits<W: Word>() -> &'static [StatusBit] {
-    match W::LEGEND {
-        Legend::Names(_) | Legend::Text(..) => &[],
-        Legend::Bits(bits) => bits,
+    fn named(self, name: &str) -> Option<R> {
+        self.names().iter().find(|(_, other)| *other == name).map(|(raw, _)| *raw)
+    }
+
+    const fn names(self) -> &'static [(R, &'static str)] {
+        match self {
+            Self::Names(names) => names,
+            Self::Bits(_) | Self::Text(..) => &[],
+        }
+    }
+
+    const fn bits(self) -> &'static [StatusBit] {
+        match self {
+            Self::Bits(bits) => bits,
+            Self::Names(_) | Self::Text(..) => &[],
+        }
     }
 }
 
@@ -134,7 +143,7 @@ mod tests {
 
     impl Word for Power {
         type Raw = u8;
-        const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+        const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "off")]);
         const FROM_RAW: fn(u8) -> Self = |raw| match raw {
             0 => Self::On,
             1 => Self::Off,
@@ -152,7 +161,7 @@ mod tests {
 
     impl Word for Status {
         type Raw = u8;
-        const LEGEND: Legend<Self> =
+        const LEGEND: Legend<u8> =
             Legend::Bits(&[StatusBit::state(0, "dc_off", "DC side is off"), StatusBit::alarm(5, "hot", "Too hot")]);
         const FROM_RAW: fn(u8) -> Self = Self;
         const RAW: fn(Self) -> u8 = |status| status.0;

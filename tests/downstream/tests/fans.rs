@@ -1,5 +1,7 @@
 //! Frames of the fans, put together by hand: priority 6 is 0x01800000 in the identifier, the command starts at bit 16.
 
+use std::collections::HashSet;
+
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
     Air, Error, Failure, Frame, History, Hours, Identifier, Layout, Message, Model, Power, Problem, Replies, Request,
@@ -33,6 +35,14 @@ fn power_0_is_on_and_power_1_is_off() {
     assert_eq!(speed(Power::Off), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
     assert_eq!(speed(Power::Unknown(7)), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 7]));
     assert_eq!([Power::On, Power::Off, Power::Unknown(7)].map(Power::name), [Some("on"), Some("off"), None]);
+}
+
+#[test]
+fn values_with_the_same_number_are_equal_whether_named_or_not() {
+    assert_eq!([0, 1, 7].map(Power::Unknown), [Power::On, Power::Off, Power::from_raw(7)]);
+    assert_ne!(Power::Unknown(7), Power::Unknown(6));
+    let numbers = HashSet::from([Power::On, Power::Unknown(0), Power::Off, Power::Unknown(1), Power::Unknown(7)]);
+    assert_eq!(numbers.len(), 3);
 }
 
 #[test]

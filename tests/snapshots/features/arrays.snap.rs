@@ -72,7 +72,7 @@ pub const BATTERY_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Group. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Group {
     /// 0: `none`.
     None,
@@ -82,7 +82,22 @@ pub enum Group {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Group {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Group {}
+
+impl core::hash::Hash for Group {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Group {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -123,7 +138,7 @@ impl Group {
 
 impl Word for Group {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::None, "none"), (Self::Low, "low")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "none"), (1, "low")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

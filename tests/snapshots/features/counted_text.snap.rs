@@ -68,7 +68,7 @@ pub const MOTOR_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Remark language. Section 4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum RemarkLanguage {
     /// 1: `english`.
     English,
@@ -78,7 +78,22 @@ pub enum RemarkLanguage {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for RemarkLanguage {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for RemarkLanguage {}
+
+impl core::hash::Hash for RemarkLanguage {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl RemarkLanguage {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -119,7 +134,7 @@ impl RemarkLanguage {
 
 impl Word for RemarkLanguage {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::English, "english"), (Self::French, "french")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(1, "english"), (2, "french")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

@@ -171,7 +171,7 @@ impl MonthValue {
 
 impl Word for MonthValue {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Text(
+    const LEGEND: Legend<u64> = Legend::Text(
         2,
         &[
             Piece::Literal("20"),

@@ -64,7 +64,7 @@ pub const CYCLIC_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// Conditions pack. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ConditionsPack {
     /// 0: `off`.
     Off,
@@ -74,7 +74,22 @@ pub enum ConditionsPack {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ConditionsPack {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ConditionsPack {}
+
+impl core::hash::Hash for ConditionsPack {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ConditionsPack {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -115,7 +130,7 @@ impl ConditionsPack {
 
 impl Word for ConditionsPack {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::On, "on")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (1, "on")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

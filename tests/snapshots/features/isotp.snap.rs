@@ -249,7 +249,7 @@ pub const TP_OF_CONTROLLER_ACCESS: Access = Access::new("tp_of_controller", &[So
     .from_controller();
 
 /// How the message goes on. Section 1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum TpFlowControlStatus {
     /// 0: `proceed`.
     Proceed,
@@ -261,7 +261,22 @@ pub enum TpFlowControlStatus {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for TpFlowControlStatus {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for TpFlowControlStatus {}
+
+impl core::hash::Hash for TpFlowControlStatus {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl TpFlowControlStatus {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -304,8 +319,7 @@ impl TpFlowControlStatus {
 
 impl Word for TpFlowControlStatus {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Proceed, "proceed"), (Self::Wait, "wait"), (Self::Overflow, "overflow")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "proceed"), (1, "wait"), (2, "overflow")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

@@ -72,7 +72,7 @@ pub const BATTERY_MODE: Mode = Mode {
 pub const REPORT_ACCESS: Access = Access::new("report", &[Some(Who::One)]).report(&FRAME);
 
 /// State. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum State {
     /// 0: `idle`.
     Idle,
@@ -82,7 +82,22 @@ pub enum State {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for State {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for State {}
+
+impl core::hash::Hash for State {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl State {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -123,7 +138,7 @@ impl State {
 
 impl Word for State {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Idle, "idle"), (Self::Charging, "charging")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "idle"), (1, "charging")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

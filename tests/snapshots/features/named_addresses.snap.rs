@@ -185,7 +185,7 @@ pub const SWITCH_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Switch relay power. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum SwitchRelayPower {
     /// 0: `off`.
     Off,
@@ -195,7 +195,22 @@ pub enum SwitchRelayPower {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for SwitchRelayPower {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for SwitchRelayPower {}
+
+impl core::hash::Hash for SwitchRelayPower {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl SwitchRelayPower {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -236,7 +251,7 @@ impl SwitchRelayPower {
 
 impl Word for SwitchRelayPower {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::On, "on")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (1, "on")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

@@ -142,7 +142,7 @@ pub const SINGLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Power. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -152,7 +152,22 @@ pub enum Power {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Power {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Power {}
+
+impl core::hash::Hash for Power {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -193,13 +208,13 @@ impl Power {
 
 impl Word for Power {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "off")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Switch lamp. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum SwitchLamp {
     /// 2570: `dark`.
     Dark,
@@ -209,7 +224,22 @@ pub enum SwitchLamp {
     Unknown(u16),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for SwitchLamp {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for SwitchLamp {}
+
+impl core::hash::Hash for SwitchLamp {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl SwitchLamp {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -250,7 +280,7 @@ impl SwitchLamp {
 
 impl Word for SwitchLamp {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Dark, "dark"), (Self::Bright, "bright")]);
+    const LEGEND: Legend<u16> = Legend::Names(&[(2570, "dark"), (61_455, "bright")]);
     const FROM_RAW: fn(u16) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u16 = Self::raw;
 }

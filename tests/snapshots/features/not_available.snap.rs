@@ -142,7 +142,7 @@ pub const VEHICLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Limits lamp. Section 2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum LimitsLamp {
     /// 0: `off`.
     Off,
@@ -154,7 +154,22 @@ pub enum LimitsLamp {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for LimitsLamp {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for LimitsLamp {}
+
+impl core::hash::Hash for LimitsLamp {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl LimitsLamp {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -197,8 +212,7 @@ impl LimitsLamp {
 
 impl Word for LimitsLamp {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Off, "off"), (Self::On, "on"), (Self::NotAvailable, "not_available")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (1, "on"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

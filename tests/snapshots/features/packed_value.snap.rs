@@ -174,7 +174,7 @@ impl LabelValue {
 
 impl Word for LabelValue {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Text(
+    const LEGEND: Legend<u64> = Legend::Text(
         4,
         &[
             Piece::number::<u8>(Self::MAJOR),

@@ -142,7 +142,7 @@ pub const SINGLE_MODE: Mode = Mode {
 pub const SET_ACCESS: Access = Access::new("set", &[Some(Who::One)]).with_values().request(&FRAME).reply(&FRAME);
 
 /// Control mode. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ControlMode {
     /// 0: `local`.
     Local,
@@ -152,7 +152,22 @@ pub enum ControlMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ControlMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ControlMode {}
+
+impl core::hash::Hash for ControlMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ControlMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -193,13 +208,13 @@ impl ControlMode {
 
 impl Word for ControlMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Local, "local"), (Self::Remote, "remote")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "local"), (1, "remote")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Control power. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ControlPower {
     /// 0: `running`.
     Running,
@@ -209,7 +224,22 @@ pub enum ControlPower {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ControlPower {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ControlPower {}
+
+impl core::hash::Hash for ControlPower {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ControlPower {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -250,7 +280,7 @@ impl ControlPower {
 
 impl Word for ControlPower {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Running, "running"), (Self::Stopped, "stopped")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "running"), (1, "stopped")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

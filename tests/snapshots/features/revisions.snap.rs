@@ -191,8 +191,7 @@ impl SetLimitsAlarms {
 
 impl Word for SetLimitsAlarms {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Bits(&[StatusBit::alarm(0, "hot", "hot"), StatusBit::alarm(1, "cold", "cold")]);
+    const LEGEND: Legend<u8> = Legend::Bits(&[StatusBit::alarm(0, "hot", "hot"), StatusBit::alarm(1, "cold", "cold")]);
     const FROM_RAW: fn(u8) -> Self = Self;
     const RAW: fn(Self) -> u8 = |word| word.0;
 }

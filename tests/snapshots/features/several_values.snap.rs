@@ -162,7 +162,7 @@ pub const ABORT_ACCESS: Access = Access::new("abort", &[Some(Who::One)])
     .reply(&FRAME.selectors(&[COMMAND_SELECTOR, INDEX_SELECTOR]).data(COMMAND_SELECTOR.place, 0x80));
 
 /// Aborted value. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AbortedValue {
     /// 100728834: `read_only`.
     ReadOnly,
@@ -172,7 +172,22 @@ pub enum AbortedValue {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AbortedValue {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AbortedValue {}
+
+impl core::hash::Hash for AbortedValue {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AbortedValue {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -213,7 +228,7 @@ impl AbortedValue {
 
 impl Word for AbortedValue {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::ReadOnly, "read_only"), (Self::TooHigh, "too_high")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(100_728_834, "read_only"), (101_253_169, "too_high")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }

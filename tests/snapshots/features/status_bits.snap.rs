@@ -183,7 +183,7 @@ impl FailuresFailure {
 
 impl Word for FailuresFailure {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u32> = Legend::Bits(&[
         StatusBit::new(0, "cell_0", "Balancing of cell 0"),
         StatusBit::new(1, "cell_1", "Balancing of cell 1"),
         StatusBit::new(6, "pack_too_high", "pack too high"),
@@ -234,7 +234,7 @@ impl FailuresMaker {
 
 impl Word for FailuresMaker {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[]);
+    const LEGEND: Legend<u8> = Legend::Bits(&[]);
     const FROM_RAW: fn(u8) -> Self = Self;
     const RAW: fn(Self) -> u8 = |word| word.0;
 }

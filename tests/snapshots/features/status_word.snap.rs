@@ -181,7 +181,7 @@ impl State {
 
 impl Word for State {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u16> = Legend::Bits(&[
         StatusBit::state(0, "calm", "calm"),
         StatusBit::alarm(1, "hot", "hot"),
         StatusBit::fault(9, "fan_fault", "The fan stands still"),

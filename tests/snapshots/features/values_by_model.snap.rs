@@ -154,7 +154,7 @@ pub struct Within<M> {
 }
 
 /// Set mode mode. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum SetModeMode {
     /// 0: `idle`.
     Idle,
@@ -164,7 +164,22 @@ pub enum SetModeMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for SetModeMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for SetModeMode {}
+
+impl core::hash::Hash for SetModeMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl SetModeMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -205,7 +220,7 @@ impl SetModeMode {
 
 impl Word for SetModeMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Idle, "idle"), (Self::Boost, "boost")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "idle"), (2, "boost")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }

@@ -227,7 +227,7 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
 /// Whether the battery is charging or discharging. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum OperatingState {
     /// 0: `stationary`.
     Stationary,
@@ -239,7 +239,22 @@ pub enum OperatingState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for OperatingState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for OperatingState {}
+
+impl core::hash::Hash for OperatingState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl OperatingState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -282,17 +297,13 @@ impl OperatingState {
 
 impl Word for OperatingState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Stationary, "stationary"),
-        (Self::Charging, "charging"),
-        (Self::Discharging, "discharging"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "stationary"), (1, "charging"), (2, "discharging")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether something is connected. Section 5.5.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Connection {
     /// 0: `disconnected`.
     Disconnected,
@@ -302,7 +313,22 @@ pub enum Connection {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Connection {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Connection {}
+
+impl core::hash::Hash for Connection {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Connection {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -343,7 +369,7 @@ impl Connection {
 
 impl Word for Connection {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disconnected, "disconnected"), (Self::Connected, "connected")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "disconnected"), (1, "connected")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -401,7 +427,7 @@ impl InputsOutputs {
 
 impl Word for InputsOutputs {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::state(0, "di_1", "Digital input 1"),
         StatusBit::state(1, "di_2", "Digital input 2"),
         StatusBit::state(2, "di_3", "Digital input 3"),
@@ -560,7 +586,7 @@ impl Balance {
 
 impl Word for Balance {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u64> = Legend::Bits(&[
         StatusBit::state(0, "cell_1", "Balance switch open, cell 1"),
         StatusBit::state(1, "cell_2", "Balance switch open, cell 2"),
         StatusBit::state(2, "cell_3", "Balance switch open, cell 3"),
@@ -758,7 +784,7 @@ impl Failures {
 
 impl Word for Failures {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u64> = Legend::Bits(&[
         StatusBit::alarm(0, "cell_voltage_high_level_1", "Cell voltage too high (level 1)"),
         StatusBit::fault(1, "cell_voltage_high_level_2", "Cell voltage too high (level 2)"),
         StatusBit::alarm(2, "cell_voltage_low_level_1", "Cell voltage too low (level 1)"),

@@ -290,7 +290,7 @@ pub const TP_OF_CONTROLLER_ACCESS_2: Access =
     Access::new("tp_of_controller", &[Some(Who::One), Some(Who::One)]).with_values().report(&FRAME).from_controller();
 
 /// Whether the charger has recognised the BMS. Section 5.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Recognition {
     /// 0: `not_recognised`.
     NotRecognised,
@@ -300,7 +300,22 @@ pub enum Recognition {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Recognition {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Recognition {}
+
+impl core::hash::Hash for Recognition {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Recognition {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -341,14 +356,13 @@ impl Recognition {
 
 impl Word for Recognition {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::NotRecognised, "not_recognised"), (Self::Recognised, "recognised")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "not_recognised"), (170, "recognised")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Type of the battery. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum BatteryType {
     /// 1: `lead_acid`.
     LeadAcid,
@@ -372,7 +386,22 @@ pub enum BatteryType {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for BatteryType {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for BatteryType {}
+
+impl core::hash::Hash for BatteryType {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl BatteryType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -427,23 +456,23 @@ impl BatteryType {
 
 impl Word for BatteryType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::LeadAcid, "lead_acid"),
-        (Self::NickelMetalHydride, "nickel_metal_hydride"),
-        (Self::LithiumIronPhosphate, "lithium_iron_phosphate"),
-        (Self::LithiumManganeseOxide, "lithium_manganese_oxide"),
-        (Self::LithiumCobaltOxide, "lithium_cobalt_oxide"),
-        (Self::Ternary, "ternary"),
-        (Self::PolymerLithiumIon, "polymer_lithium_ion"),
-        (Self::LithiumTitanate, "lithium_titanate"),
-        (Self::Other, "other"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (1, "lead_acid"),
+        (2, "nickel_metal_hydride"),
+        (3, "lithium_iron_phosphate"),
+        (4, "lithium_manganese_oxide"),
+        (5, "lithium_cobalt_oxide"),
+        (6, "ternary"),
+        (7, "polymer_lithium_ion"),
+        (8, "lithium_titanate"),
+        (255, "other"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the battery is leased or belongs to the vehicle. Section 5.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Ownership {
     /// 0: `leased`.
     Leased,
@@ -455,7 +484,22 @@ pub enum Ownership {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Ownership {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Ownership {}
+
+impl core::hash::Hash for Ownership {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Ownership {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -498,8 +542,7 @@ impl Ownership {
 
 impl Word for Ownership {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Leased, "leased"), (Self::Owned, "owned"), (Self::NotAvailable, "not_available")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "leased"), (1, "owned"), (255, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -508,7 +551,7 @@ impl Word for Ownership {
 ///
 /// Erratum X19: printed is "`0xFF` as invalid in the standard, and only 0x00 and `0xAA` in A and D",
 /// used is "three values", because the examples have frames with `0xFF`.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Readiness {
     /// 0: `not_ready`.
     NotReady,
@@ -520,7 +563,22 @@ pub enum Readiness {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Readiness {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Readiness {}
+
+impl core::hash::Hash for Readiness {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Readiness {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -563,14 +621,13 @@ impl Readiness {
 
 impl Word for Readiness {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::NotReady, "not_ready"), (Self::Ready, "ready"), (Self::Invalid, "invalid")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "not_ready"), (170, "ready"), (255, "invalid")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Charging mode. Section 5.10.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ChargingMode {
     /// 1: `constant_voltage`.
     ConstantVoltage,
@@ -582,7 +639,22 @@ pub enum ChargingMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ChargingMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ChargingMode {}
+
+impl core::hash::Hash for ChargingMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ChargingMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -625,11 +697,8 @@ impl ChargingMode {
 
 impl Word for ChargingMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::ConstantVoltage, "constant_voltage"),
-        (Self::ConstantCurrent, "constant_current"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(1, "constant_voltage"), (2, "constant_current"), (255, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -637,7 +706,7 @@ impl Word for ChargingMode {
 /// Whether the charger goes on. Section 5.12.
 ///
 /// `pause` says that it is going to stop its output.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ChargerPermission {
     /// 0: `pause`.
     Pause,
@@ -649,7 +718,22 @@ pub enum ChargerPermission {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ChargerPermission {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ChargerPermission {}
+
+impl core::hash::Hash for ChargerPermission {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ChargerPermission {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -692,14 +776,13 @@ impl ChargerPermission {
 
 impl Word for ChargerPermission {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Pause, "pause"), (Self::Allowed, "allowed"), (Self::NotAvailable, "not_available")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "pause"), (1, "allowed"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether a value is within its limits. Section 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum LevelState {
     /// 0: `normal`.
     Normal,
@@ -713,7 +796,22 @@ pub enum LevelState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for LevelState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for LevelState {}
+
+impl core::hash::Hash for LevelState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl LevelState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -758,18 +856,13 @@ impl LevelState {
 
 impl Word for LevelState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::TooHigh, "too_high"),
-        (Self::TooLow, "too_low"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "too_high"), (2, "too_low"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the charging current is too high. Section 3.6, 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum OvercurrentState {
     /// 0: `normal`.
     Normal,
@@ -783,7 +876,22 @@ pub enum OvercurrentState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for OvercurrentState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for OvercurrentState {}
+
+impl core::hash::Hash for OvercurrentState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl OvercurrentState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -828,18 +936,14 @@ impl OvercurrentState {
 
 impl Word for OvercurrentState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Overcurrent, "overcurrent"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(0, "normal"), (1, "overcurrent"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether a temperature is too high. Section 3.6, 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeatState {
     /// 0: `normal`.
     Normal,
@@ -853,7 +957,22 @@ pub enum HeatState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeatState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeatState {}
+
+impl core::hash::Hash for HeatState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeatState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -898,18 +1017,13 @@ impl HeatState {
 
 impl Word for HeatState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::TooHigh, "too_high"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "too_high"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether something is abnormal. Section 3.6, 5.13, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AbnormalState {
     /// 0: `normal`.
     Normal,
@@ -923,7 +1037,22 @@ pub enum AbnormalState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AbnormalState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AbnormalState {}
+
+impl core::hash::Hash for AbnormalState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AbnormalState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -968,18 +1097,13 @@ impl AbnormalState {
 
 impl Word for AbnormalState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Abnormal, "abnormal"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "abnormal"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the BMS allows charging. Section 5.13.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum BmsPermission {
     /// 0: `prohibited`.
     Prohibited,
@@ -991,7 +1115,22 @@ pub enum BmsPermission {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for BmsPermission {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for BmsPermission {}
+
+impl core::hash::Hash for BmsPermission {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl BmsPermission {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1034,17 +1173,13 @@ impl BmsPermission {
 
 impl Word for BmsPermission {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Prohibited, "prohibited"),
-        (Self::Allowed, "allowed"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "prohibited"), (1, "allowed"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether a target is reached. Section 3.6, 5.17.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ReachedState {
     /// 0: `not_reached`.
     NotReached,
@@ -1058,7 +1193,22 @@ pub enum ReachedState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ReachedState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ReachedState {}
+
+impl core::hash::Hash for ReachedState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ReachedState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1103,18 +1253,14 @@ impl ReachedState {
 
 impl Word for ReachedState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::NotReached, "not_reached"),
-        (Self::Reached, "reached"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(0, "not_reached"), (1, "reached"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether this stopped the charging. Section 3.6, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum StopState {
     /// 0: `normal`.
     Normal,
@@ -1128,7 +1274,22 @@ pub enum StopState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for StopState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for StopState {}
+
+impl core::hash::Hash for StopState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl StopState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1173,18 +1334,13 @@ impl StopState {
 
 impl Word for StopState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Stopped, "stopped"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "stopped"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether there is a fault. Section 3.6, 5.17, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum FaultState {
     /// 0: `normal`.
     Normal,
@@ -1198,7 +1354,22 @@ pub enum FaultState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for FaultState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for FaultState {}
+
+impl core::hash::Hash for FaultState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl FaultState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1243,18 +1414,13 @@ impl FaultState {
 
 impl Word for FaultState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Fault, "fault"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "fault"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the demand is exceeded. Section 3.6, 5.17.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ExcessState {
     /// 0: `normal`.
     Normal,
@@ -1268,7 +1434,22 @@ pub enum ExcessState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ExcessState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ExcessState {}
+
+impl core::hash::Hash for ExcessState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ExcessState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1313,18 +1494,13 @@ impl ExcessState {
 
 impl Word for ExcessState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Exceeded, "exceeded"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "exceeded"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether two values do not match. Section 3.6, 5.18.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum MismatchState {
     /// 0: `normal`.
     Normal,
@@ -1338,7 +1514,22 @@ pub enum MismatchState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for MismatchState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for MismatchState {}
+
+impl core::hash::Hash for MismatchState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl MismatchState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1383,18 +1574,13 @@ impl MismatchState {
 
 impl Word for MismatchState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Mismatch, "mismatch"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "mismatch"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the wait for a message timed out. Section 3.6, 5.21, 5.22.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum TimeoutState {
     /// 0: `normal`.
     Normal,
@@ -1408,7 +1594,22 @@ pub enum TimeoutState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for TimeoutState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for TimeoutState {}
+
+impl core::hash::Hash for TimeoutState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl TimeoutState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1453,18 +1654,13 @@ impl TimeoutState {
 
 impl Word for TimeoutState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::Timeout, "timeout"),
-        (Self::Untrusted, "untrusted"),
-        (Self::NotAvailable, "not_available"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "timeout"), (2, "untrusted"), (3, "not_available")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Order of the bytes of the number. Section 6.1, 6.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum TroubleCodeConversion {
     /// 0: `intel_order`.
     IntelOrder,
@@ -1472,7 +1668,22 @@ pub enum TroubleCodeConversion {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for TroubleCodeConversion {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for TroubleCodeConversion {}
+
+impl core::hash::Hash for TroubleCodeConversion {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl TroubleCodeConversion {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1511,13 +1722,13 @@ impl TroubleCodeConversion {
 
 impl Word for TroubleCodeConversion {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::IntelOrder, "intel_order")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "intel_order")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Number of a parameter group. Section 2.2, 4, 6.1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Pgn {
     /// 256: `crm`.
     Crm,
@@ -1583,7 +1794,22 @@ pub enum Pgn {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Pgn {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Pgn {}
+
+impl core::hash::Hash for Pgn {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Pgn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1680,44 +1906,44 @@ impl Pgn {
 
 impl Word for Pgn {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Crm, "crm"),
-        (Self::Brm, "brm"),
-        (Self::Bcp, "bcp"),
-        (Self::Cts, "cts"),
-        (Self::Cml, "cml"),
-        (Self::Bro, "bro"),
-        (Self::Cro, "cro"),
-        (Self::Bcl, "bcl"),
-        (Self::Bcs, "bcs"),
-        (Self::Ccs, "ccs"),
-        (Self::Bsm, "bsm"),
-        (Self::Bmv, "bmv"),
-        (Self::Bmt, "bmt"),
-        (Self::Bsp, "bsp"),
-        (Self::Bst, "bst"),
-        (Self::Cst, "cst"),
-        (Self::Bsd, "bsd"),
-        (Self::Csd, "csd"),
-        (Self::Bem, "bem"),
-        (Self::Cem, "cem"),
-        (Self::Dm1, "dm1"),
-        (Self::Dm2, "dm2"),
-        (Self::Dm3, "dm3"),
-        (Self::Dm4, "dm4"),
-        (Self::Dm5, "dm5"),
-        (Self::Dm6, "dm6"),
-        (Self::Chm, "chm"),
-        (Self::Bhm, "bhm"),
-        (Self::Ackm, "ackm"),
-        (Self::Rqst, "rqst"),
+    const LEGEND: Legend<u32> = Legend::Names(&[
+        (256, "crm"),
+        (512, "brm"),
+        (1536, "bcp"),
+        (1792, "cts"),
+        (2048, "cml"),
+        (2304, "bro"),
+        (2560, "cro"),
+        (4096, "bcl"),
+        (4352, "bcs"),
+        (4608, "ccs"),
+        (4864, "bsm"),
+        (5376, "bmv"),
+        (5632, "bmt"),
+        (5888, "bsp"),
+        (6400, "bst"),
+        (6656, "cst"),
+        (7168, "bsd"),
+        (7424, "csd"),
+        (7680, "bem"),
+        (7936, "cem"),
+        (8192, "dm1"),
+        (8448, "dm2"),
+        (8704, "dm3"),
+        (8960, "dm4"),
+        (9216, "dm5"),
+        (9472, "dm6"),
+        (9728, "chm"),
+        (9984, "bhm"),
+        (59_392, "ackm"),
+        (59_904, "rqst"),
     ]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
 
 /// Answer to a request. Section 6.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Acknowledgment {
     /// 0: `positive`.
     Positive,
@@ -1733,7 +1959,22 @@ pub enum Acknowledgment {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Acknowledgment {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Acknowledgment {}
+
+impl core::hash::Hash for Acknowledgment {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Acknowledgment {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1780,12 +2021,12 @@ impl Acknowledgment {
 
 impl Word for Acknowledgment {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Positive, "positive"),
-        (Self::Negative, "negative"),
-        (Self::AccessDenied, "access_denied"),
-        (Self::CannotRespond, "cannot_respond"),
-        (Self::NotAvailable, "not_available"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (0, "positive"),
+        (1, "negative"),
+        (2, "access_denied"),
+        (3, "cannot_respond"),
+        (255, "not_available"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;

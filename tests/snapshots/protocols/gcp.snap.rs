@@ -510,7 +510,7 @@ pub struct Within<M> {
 ///
 /// Erratum C21: printed is "Start of processing for error code 0x07", used is "starting up", because
 /// 3.2.4 says that modules use this code in the start-up phase.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ErrorCode {
     /// 0: `normal`.
     Normal,
@@ -524,7 +524,22 @@ pub enum ErrorCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ErrorCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ErrorCode {}
+
+impl core::hash::Hash for ErrorCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ErrorCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -569,12 +584,8 @@ impl ErrorCode {
 
 impl Word for ErrorCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::CommandInvalid, "command_invalid"),
-        (Self::DataInvalid, "data_invalid"),
-        (Self::StartingUp, "starting_up"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(0, "normal"), (2, "command_invalid"), (3, "data_invalid"), (7, "starting_up")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -582,7 +593,7 @@ impl Word for ErrorCode {
 /// Mode of the DC input. Section 3.3.
 ///
 /// `dcdc` has the green LED on and `mppt` has it flashing.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum OperatingMode {
     /// 160: `dcdc`.
     Dcdc,
@@ -592,7 +603,22 @@ pub enum OperatingMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for OperatingMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for OperatingMode {}
+
+impl core::hash::Hash for OperatingMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl OperatingMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -633,13 +659,13 @@ impl OperatingMode {
 
 impl Word for OperatingMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Dcdc, "dcdc"), (Self::Mppt, "mppt")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(160, "dcdc"), (161, "mppt")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Slow startup. Section 3.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum WalkIn {
     /// 0: `disabled`.
     Disabled,
@@ -649,7 +675,22 @@ pub enum WalkIn {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for WalkIn {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for WalkIn {}
+
+impl core::hash::Hash for WalkIn {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl WalkIn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -690,7 +731,7 @@ impl WalkIn {
 
 impl Word for WalkIn {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "disabled"), (1, "enabled")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -701,7 +742,7 @@ impl Word for WalkIn {
 /// examples, with LED off as the last text", used is "1 flashing, 0 normal", because two requests and
 /// two replies agree against one row, whose words are those of 0x1A; an LED that no longer flashes need
 /// not be dark.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Led {
     /// 0: `normal`.
     Normal,
@@ -711,7 +752,22 @@ pub enum Led {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Led {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Led {}
+
+impl core::hash::Hash for Led {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Led {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -752,7 +808,7 @@ impl Led {
 
 impl Word for Led {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Flashing, "flashing")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "flashing")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -760,7 +816,7 @@ impl Word for Led {
 /// Operational readiness. Section 3.3.
 ///
 /// 0 is on, so all-zero data switch modules on.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -770,7 +826,22 @@ pub enum Power {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Power {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Power {}
+
+impl core::hash::Hash for Power {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -811,7 +882,7 @@ impl Power {
 
 impl Word for Power {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "off")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -885,7 +956,7 @@ impl Status2 {
 
 impl Word for Status2 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::state(0, "power_limited", "Output power of the module limited"),
         StatusBit::fault(1, "duplicate_id", "ID of the module used twice"),
         StatusBit::fault(2, "current_imbalance", "No load sharing by the module"),
@@ -972,7 +1043,7 @@ impl Status1 {
 
 impl Word for Status1 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::state(0, "dc_off", "DC side is switched off"),
         StatusBit::fault(1, "fault", "Module fault"),
         StatusBit::alarm(2, "protection", "Module protection active"),
@@ -1044,7 +1115,7 @@ impl Status0 {
 
 impl Word for Status0 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::fault(0, "output_short_circuit", "Output short-circuited"),
         StatusBit::fault(2, "internal_communication_fault", "Communication inside the module failed"),
         StatusBit::alarm(3, "pfc_abnormal", "PFC circuit abnormal"),

@@ -584,7 +584,7 @@ const FAN_DUTY_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 ];
 
 /// Command. Section 2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum CommandCode {
     /// 16: `start_up_10`.
     StartUp10,
@@ -606,7 +606,22 @@ pub enum CommandCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for CommandCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for CommandCode {}
+
+impl core::hash::Hash for CommandCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl CommandCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -659,15 +674,15 @@ impl CommandCode {
 
 impl Word for CommandCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::StartUp10, "start_up_10"),
-        (Self::Unsolicited, "unsolicited"),
-        (Self::Data, "data"),
-        (Self::Information, "information"),
-        (Self::Set, "set"),
-        (Self::StartUp81, "start_up_81"),
-        (Self::Get, "get"),
-        (Self::ELabel, "e_label"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (16, "start_up_10"),
+        (17, "unsolicited"),
+        (64, "data"),
+        (80, "information"),
+        (128, "set"),
+        (129, "start_up_81"),
+        (130, "get"),
+        (210, "e_label"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
@@ -678,7 +693,7 @@ impl Word for CommandCode {
 /// Erratum Z20: printed is "0 as from the PSU (2.1), and 1 in two of the frames that a PSU sends by
 /// itself", used is "reports of a PSU, each with its own pattern", because their command and register
 /// tell them from requests; what the bit means there is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum DirectionCode {
     /// 0: `from_psu`.
     FromPsu,
@@ -688,7 +703,22 @@ pub enum DirectionCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for DirectionCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for DirectionCode {}
+
+impl core::hash::Hash for DirectionCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl DirectionCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -729,7 +759,7 @@ impl DirectionCode {
 
 impl Word for DirectionCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::FromPsu, "from_psu"), (Self::ToPsu, "to_psu")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "from_psu"), (1, "to_psu")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -739,7 +769,7 @@ impl Word for DirectionCode {
 /// Erratum Z3: printed is "1081407E as the last frame of the data reply in P and C, 1081407F for all
 /// frames in X", used is "1081407E for the last; the alarms may come in either", because 2.1 has 0 for
 /// the last frame, and two sources print such frames.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum MoreCode {
     /// 0: `last`.
     Last,
@@ -749,7 +779,22 @@ pub enum MoreCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for MoreCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for MoreCode {}
+
+impl core::hash::Hash for MoreCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl MoreCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -790,7 +835,7 @@ impl MoreCode {
 
 impl Word for MoreCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Last, "last"), (Self::More, "more")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "last"), (1, "more")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -806,7 +851,7 @@ impl Word for MoreCode {
 ///
 /// Erratum N1: printed is "0 and 2 as status, and no other", used is "any other as an error without a
 /// name", because nothing else is said.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeaderStatus {
     /// 0: `ok`.
     Ok,
@@ -816,7 +861,22 @@ pub enum HeaderStatus {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeaderStatus {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeaderStatus {}
+
+impl core::hash::Hash for HeaderStatus {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeaderStatus {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -857,13 +917,13 @@ impl HeaderStatus {
 
 impl Word for HeaderStatus {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Ok, "ok"), (Self::ParameterError, "parameter_error")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "ok"), (2, "parameter_error")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the limit holds. Section 7.1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum LimitState {
     /// 0: `inactive`.
     Inactive,
@@ -873,7 +933,22 @@ pub enum LimitState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for LimitState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for LimitState {}
+
+impl core::hash::Hash for LimitState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl LimitState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -914,13 +989,13 @@ impl LimitState {
 
 impl Word for LimitState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Inactive, "inactive"), (Self::Active, "active")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "inactive"), (1, "active")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Whether the PSU is on or in standby. Section 7.1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum SwitchState {
     /// 0: `on`.
     On,
@@ -930,7 +1005,22 @@ pub enum SwitchState {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for SwitchState {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for SwitchState {}
+
+impl core::hash::Hash for SwitchState {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl SwitchState {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -971,7 +1061,7 @@ impl SwitchState {
 
 impl Word for SwitchState {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Standby, "standby")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "standby")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -982,7 +1072,7 @@ impl Word for SwitchState {
 ///
 /// Erratum Z19: printed is "2 as persistent in P, and in O 1 as maximum on-line and 2 as maximum
 /// off-line", used is "persistent", because O is an older revision of P.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum FanControl {
     /// 0: `auto`.
     Auto,
@@ -994,7 +1084,22 @@ pub enum FanControl {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for FanControl {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for FanControl {}
+
+impl core::hash::Hash for FanControl {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl FanControl {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1037,11 +1142,7 @@ impl FanControl {
 
 impl Word for FanControl {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Auto, "auto"),
-        (Self::Maximum, "maximum"),
-        (Self::MaximumPersistent, "maximum_persistent"),
-    ]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "auto"), (1, "maximum"), (2, "maximum_persistent")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1049,7 +1150,7 @@ impl Word for FanControl {
 /// Whether the PSU is ready. Section 9.2.
 ///
 /// Ready means that AC is present and that there is no fault.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Readiness {
     /// 0: `ready`.
     Ready,
@@ -1059,7 +1160,22 @@ pub enum Readiness {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Readiness {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Readiness {}
+
+impl core::hash::Hash for Readiness {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Readiness {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1100,7 +1216,7 @@ impl Readiness {
 
 impl Word for Readiness {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Ready, "ready"), (Self::NotReady, "not_ready")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "ready"), (1, "not_ready")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1108,7 +1224,7 @@ impl Word for Readiness {
 /// Whether the PSU gives voltage. Section 9.2.
 ///
 /// It is not active while it boots and in standby.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Activity {
     /// 0: `not_active`.
     NotActive,
@@ -1118,7 +1234,22 @@ pub enum Activity {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Activity {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Activity {}
+
+impl core::hash::Hash for Activity {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Activity {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1159,7 +1290,7 @@ impl Activity {
 
 impl Word for Activity {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::NotActive, "not_active"), (Self::Active, "active")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "not_active"), (1, "active")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1200,7 +1331,7 @@ impl AlarmBits {
 
 impl Word for AlarmBits {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Bits(&[]);
+    const LEGEND: Legend<u64> = Legend::Bits(&[]);
     const FROM_RAW: fn(u64) -> Self = Self;
     const RAW: fn(Self) -> u64 = |word| word.0;
 }

@@ -537,7 +537,7 @@ const OUTPUT_CURRENT_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
 ///
 /// Codes changed in V1.07, which ones is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ErrorCode {
     /// 0: `normal`.
     Normal,
@@ -553,7 +553,22 @@ pub enum ErrorCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ErrorCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ErrorCode {}
+
+impl core::hash::Hash for ErrorCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ErrorCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -600,19 +615,19 @@ impl ErrorCode {
 
 impl Word for ErrorCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::CommandInvalid, "command_invalid"),
-        (Self::DataInvalid, "data_invalid"),
-        (Self::AddressInvalid, "address_invalid"),
-        (Self::StartingUp, "starting_up"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (0, "normal"),
+        (2, "command_invalid"),
+        (3, "data_invalid"),
+        (4, "address_invalid"),
+        (7, "starting_up"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Soft start. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum WalkIn {
     /// 0: `disabled`.
     Disabled,
@@ -622,7 +637,22 @@ pub enum WalkIn {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for WalkIn {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for WalkIn {}
+
+impl core::hash::Hash for WalkIn {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl WalkIn {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -663,13 +693,13 @@ impl WalkIn {
 
 impl Word for WalkIn {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "disabled"), (1, "enabled")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Green LED. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Led {
     /// 0: `normal`.
     Normal,
@@ -679,7 +709,22 @@ pub enum Led {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Led {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Led {}
+
+impl core::hash::Hash for Led {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Led {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -720,13 +765,13 @@ impl Led {
 
 impl Word for Led {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Flashing, "flashing")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "normal"), (1, "flashing")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Sleep. Section 2.4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Sleep {
     /// 0: `awake`.
     Awake,
@@ -736,7 +781,22 @@ pub enum Sleep {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Sleep {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Sleep {}
+
+impl core::hash::Hash for Sleep {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Sleep {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -777,7 +837,7 @@ impl Sleep {
 
 impl Word for Sleep {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Awake, "awake"), (Self::Asleep, "asleep")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "awake"), (1, "asleep")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -786,7 +846,7 @@ impl Word for Sleep {
 ///
 /// 0 is on, so all-zero data switch modules on; one without a set-point since power-on then delivers
 /// its default, see `models`.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -796,7 +856,22 @@ pub enum Power {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Power {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Power {}
+
+impl core::hash::Hash for Power {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -837,7 +912,7 @@ impl Power {
 
 impl Word for Power {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "off")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -846,7 +921,7 @@ impl Word for Power {
 ///
 /// Automatic by default, with the group from the DIP switch; such addresses follow the serial numbers
 /// and stay until a module is exchanged, added or removed.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AddressMode {
     /// 0: `automatic`.
     Automatic,
@@ -856,7 +931,22 @@ pub enum AddressMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AddressMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AddressMode {}
+
+impl core::hash::Hash for AddressMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -897,7 +987,7 @@ impl AddressMode {
 
 impl Word for AddressMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "automatic"), (1, "dip_switch")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -955,7 +1045,7 @@ impl Status2 {
 
 impl Word for Status2 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::state(0, "power_limited", "Power of the module limited"),
         StatusBit::fault(1, "duplicate_id", "ID of the module used twice"),
         StatusBit::fault(2, "current_imbalance", "Severe current imbalance between modules"),
@@ -1028,7 +1118,7 @@ impl Status1 {
 
 impl Word for Status1 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::state(0, "dc_off", "DC side is switched off"),
         StatusBit::fault(1, "fault", "Module fault"),
         StatusBit::alarm(2, "protection", "Module protection active"),
@@ -1094,7 +1184,7 @@ impl Status0 {
 
 impl Word for Status0 {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u8> = Legend::Bits(&[
         StatusBit::fault(0, "output_short_circuit", "Output short-circuited"),
         StatusBit::fault(2, "internal_communication_fault", "Communication inside the module failed"),
         StatusBit::fault(3, "input_or_bus_abnormal", "Input or power bus abnormal"),
@@ -1146,7 +1236,7 @@ impl BarcodeValue {
 
 impl Word for BarcodeValue {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Text(
+    const LEGEND: Legend<u64> = Legend::Text(
         8,
         &[
             Piece::digits::<u64>(Self::NUMBER, 12).limits(0, 999_999_999_999),

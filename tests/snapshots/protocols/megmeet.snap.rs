@@ -392,7 +392,7 @@ const OVERVOLTAGE_POINT_LIMITS: &[(u8, Option<(f64, f64)>)] =
 /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
 /// what is kept in the EEPROM", because only 0x80 with 0x100 has an example; configuration and EEPROM
 /// go together, and nothing forbids 0x80; whether it stores too is not said.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum CommandCode {
     /// 64: `real_time_data`.
     RealTimeData,
@@ -408,7 +408,22 @@ pub enum CommandCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for CommandCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for CommandCode {}
+
+impl core::hash::Hash for CommandCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl CommandCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -455,12 +470,12 @@ impl CommandCode {
 
 impl Word for CommandCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::RealTimeData, "real_time_data"),
-        (Self::InherentInformation, "inherent_information"),
-        (Self::Set, "set"),
-        (Self::Store, "store"),
-        (Self::Read, "read"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (64, "real_time_data"),
+        (80, "inherent_information"),
+        (128, "set"),
+        (129, "store"),
+        (130, "read"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
@@ -473,7 +488,7 @@ impl Word for CommandCode {
 ///
 /// Erratum M34: printed is "the node and the main node", used is "module and controller", because the
 /// notes of 3.1 to 3.3 have them.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum SenderCode {
     /// 0: `module`.
     Module,
@@ -483,7 +498,22 @@ pub enum SenderCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for SenderCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for SenderCode {}
+
+impl core::hash::Hash for SenderCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl SenderCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -524,7 +554,7 @@ impl SenderCode {
 
 impl Word for SenderCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Module, "module"), (Self::Controller, "controller")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "module"), (1, "controller")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -536,7 +566,7 @@ impl Word for SenderCode {
 /// Erratum M1: printed is "CNT 0x0 and 0x1, both as the last part of the data", used is "0 for the last
 /// frame, 1 if more follow", because the next sentence has 0 for a single frame, and 3.1 to 3.3 explain
 /// 0 as no subsequent frames and 0/1 as whether there are.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum MoreCode {
     /// 0: `last`.
     Last,
@@ -546,7 +576,22 @@ pub enum MoreCode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for MoreCode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for MoreCode {}
+
+impl core::hash::Hash for MoreCode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl MoreCode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -587,7 +632,7 @@ impl MoreCode {
 
 impl Word for MoreCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Last, "last"), (Self::More, "more")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "last"), (1, "more")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -598,7 +643,7 @@ impl Word for MoreCode {
 ///
 /// Erratum M33: printed is "electronic tags and electronic label", used is "label for both", because an
 /// error of reading belongs to one of writing.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeaderErrorType {
     /// 0: `normal`.
     Normal,
@@ -622,7 +667,22 @@ pub enum HeaderErrorType {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeaderErrorType {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeaderErrorType {}
+
+impl core::hash::Hash for HeaderErrorType {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeaderErrorType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -677,23 +737,23 @@ impl HeaderErrorType {
 
 impl Word for HeaderErrorType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Normal, "normal"),
-        (Self::ParameterError, "parameter_error"),
-        (Self::InvalidCommand, "invalid_command"),
-        (Self::AddressRecognition, "address_recognition"),
-        (Self::LabelNotWritten, "label_not_written"),
-        (Self::LabelHardwareFailure, "label_hardware_failure"),
-        (Self::LoadingInterrupted, "loading_interrupted"),
-        (Self::SelfRegulating, "self_regulating"),
-        (Self::CabinetAddressConflict, "cabinet_address_conflict"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (0, "normal"),
+        (1, "parameter_error"),
+        (2, "invalid_command"),
+        (3, "address_recognition"),
+        (4, "label_not_written"),
+        (5, "label_hardware_failure"),
+        (6, "loading_interrupted"),
+        (7, "self_regulating"),
+        (8, "cabinet_address_conflict"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Power supply. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Supply {
     /// 0: `single`.
     Single,
@@ -703,7 +763,22 @@ pub enum Supply {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Supply {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Supply {}
+
+impl core::hash::Hash for Supply {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Supply {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -744,13 +819,13 @@ impl Supply {
 
 impl Word for Supply {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Single, "single"), (Self::Dual, "dual")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "single"), (1, "dual")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Phases of the AC input. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Phases {
     /// 0: `single_phase`.
     SinglePhase,
@@ -760,7 +835,22 @@ pub enum Phases {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Phases {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Phases {}
+
+impl core::hash::Hash for Phases {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Phases {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -801,14 +891,13 @@ impl Phases {
 
 impl Word for Phases {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::SinglePhase, "single_phase"), (Self::ThreePhase, "three_phase")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "single_phase"), (1, "three_phase")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Type of the input voltage. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum InputType {
     /// 3: `ac_and_other`.
     AcAndOther,
@@ -816,7 +905,22 @@ pub enum InputType {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for InputType {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for InputType {}
+
+impl core::hash::Hash for InputType {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl InputType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -855,13 +959,13 @@ impl InputType {
 
 impl Word for InputType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::AcAndOther, "ac_and_other")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(3, "ac_and_other")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Type of the output voltage. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum OutputType {
     /// 0: `v48`.
     V48,
@@ -871,7 +975,22 @@ pub enum OutputType {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for OutputType {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for OutputType {}
+
+impl core::hash::Hash for OutputType {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl OutputType {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -912,13 +1031,13 @@ impl OutputType {
 
 impl Word for OutputType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::V48, "v48"), (Self::V48OrV60, "v48_or_v60")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "v48"), (3, "v48_or_v60")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Efficiency in percent. Section 2.2.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Efficiency {
     /// 1: `from_90_to_91`.
     From90To91,
@@ -944,7 +1063,22 @@ pub enum Efficiency {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Efficiency {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Efficiency {}
+
+impl core::hash::Hash for Efficiency {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Efficiency {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1001,24 +1135,24 @@ impl Efficiency {
 
 impl Word for Efficiency {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::From90To91, "from_90_to_91"),
-        (Self::From91To92, "from_91_to_92"),
-        (Self::From92To93, "from_92_to_93"),
-        (Self::From93To94, "from_93_to_94"),
-        (Self::From94To95, "from_94_to_95"),
-        (Self::From95To96, "from_95_to_96"),
-        (Self::From96To97, "from_96_to_97"),
-        (Self::From97To98, "from_97_to_98"),
-        (Self::From98To99, "from_98_to_99"),
-        (Self::Above99, "above_99"),
+    const LEGEND: Legend<u8> = Legend::Names(&[
+        (1, "from_90_to_91"),
+        (2, "from_91_to_92"),
+        (3, "from_92_to_93"),
+        (4, "from_93_to_94"),
+        (5, "from_94_to_95"),
+        (6, "from_95_to_96"),
+        (7, "from_96_to_97"),
+        (8, "from_97_to_98"),
+        (9, "from_98_to_99"),
+        (10, "above_99"),
     ]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Power switch (0 is on). Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Power {
     /// 0: `on`.
     On,
@@ -1028,7 +1162,22 @@ pub enum Power {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Power {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Power {}
+
+impl core::hash::Hash for Power {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1069,13 +1218,13 @@ impl Power {
 
 impl Word for Power {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "on"), (1, "off")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Reset of a lockout. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Reset {
     /// 0: `forbid`.
     Forbid,
@@ -1085,7 +1234,22 @@ pub enum Reset {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Reset {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Reset {}
+
+impl core::hash::Hash for Reset {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Reset {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1126,13 +1290,13 @@ impl Reset {
 
 impl Word for Reset {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Reset, "reset")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "forbid"), (1, "reset")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Flashing of the green light. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Flicker {
     /// 0: `forbid`.
     Forbid,
@@ -1142,7 +1306,22 @@ pub enum Flicker {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Flicker {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Flicker {}
+
+impl core::hash::Hash for Flicker {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Flicker {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1183,7 +1362,7 @@ impl Flicker {
 
 impl Word for Flicker {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Flicker, "flicker")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "forbid"), (1, "flicker")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1192,7 +1371,7 @@ impl Word for Flicker {
 ///
 /// Erratum M44: printed is "1: Going on, for address assignment control", used is "assign", because 4
 /// starts the assignment with it.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Assignment {
     /// 0: `forbid`.
     Forbid,
@@ -1202,7 +1381,22 @@ pub enum Assignment {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Assignment {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Assignment {}
+
+impl core::hash::Hash for Assignment {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Assignment {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1243,7 +1437,7 @@ impl Assignment {
 
 impl Word for Assignment {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Assign, "assign")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "forbid"), (1, "assign")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1251,7 +1445,7 @@ impl Word for Assignment {
 /// State of a light. Section 2.2.3.
 ///
 /// Slow is 0.5 Hz and quick is 4 Hz; with `auto` the module itself controls the light.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Light {
     /// 0: `auto`.
     Auto,
@@ -1265,7 +1459,22 @@ pub enum Light {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Light {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Light {}
+
+impl core::hash::Hash for Light {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Light {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1310,14 +1519,13 @@ impl Light {
 
 impl Word for Light {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Auto, "auto"), (Self::Slow, "slow"), (Self::Quick, "quick"), (Self::Steady, "steady")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "auto"), (1, "slow"), (2, "quick"), (3, "steady")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Shielding of an alarm. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Shielding {
     /// 0: `no_shield`.
     NoShield,
@@ -1327,7 +1535,22 @@ pub enum Shielding {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Shielding {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Shielding {}
+
+impl core::hash::Hash for Shielding {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Shielding {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1368,7 +1591,7 @@ impl Shielding {
 
 impl Word for Shielding {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::NoShield, "no_shield"), (Self::Shield, "shield")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "no_shield"), (1, "shield")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1379,7 +1602,7 @@ impl Word for Shielding {
 /// `hardware` and else software addresses; with `hardware` a module whose address conflicts or that has
 /// no address board does not start, and its yellow light flashes at 4 Hz; in the other modes it works
 /// without the board.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AddressMode {
     /// 0: `hardware`.
     Hardware,
@@ -1391,7 +1614,22 @@ pub enum AddressMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AddressMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AddressMode {}
+
+impl core::hash::Hash for AddressMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1434,8 +1672,7 @@ impl AddressMode {
 
 impl Word for AddressMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Hardware, "hardware"), (Self::Slot, "slot"), (Self::Software, "software")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "hardware"), (1, "slot"), (2, "software")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1445,7 +1682,7 @@ impl Word for AddressMode {
 /// Erratum M13: printed is "type V, one byte, with `0xAAAA` and 0x5555", used is "type VII, two bytes",
 /// because the values have two bytes; they end where a byte of type V stands, and both of their bytes
 /// are alike.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AutoBoot {
     /// 43690: `automatic`.
     Automatic,
@@ -1455,7 +1692,22 @@ pub enum AutoBoot {
     Unknown(u16),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AutoBoot {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AutoBoot {}
+
+impl core::hash::Hash for AutoBoot {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AutoBoot {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1496,13 +1748,13 @@ impl AutoBoot {
 
 impl Word for AutoBoot {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::Manual, "manual")]);
+    const LEGEND: Legend<u16> = Legend::Names(&[(43_690, "automatic"), (21_845, "manual")]);
     const FROM_RAW: fn(u16) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u16 = Self::raw;
 }
 
 /// Scan for the maximum power point. Section 2.2.2.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Scan {
     /// 0: `disabled`.
     Disabled,
@@ -1512,7 +1764,22 @@ pub enum Scan {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Scan {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Scan {}
+
+impl core::hash::Hash for Scan {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Scan {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -1553,7 +1820,7 @@ impl Scan {
 
 impl Word for Scan {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "disabled"), (1, "enabled")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -1602,7 +1869,7 @@ impl ExtendedShield {
 
 impl Word for ExtendedShield {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u16> = Legend::Bits(&[
         StatusBit::new(0, "hardware_address_abnormal", "Hardware address of the module abnormal"),
         StatusBit::new(1, "input_common_mode_voltage_abnormal", "Common-mode voltage of the input abnormal"),
         StatusBit::new(2, "main_relay_coil_short_circuit", "Coil of the main relay short-circuited"),
@@ -1691,7 +1958,7 @@ impl Shield {
 
 impl Word for Shield {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u32> = Legend::Bits(&[
         StatusBit::new(0, "output_overvoltage_lockout", "Locked out after an output overvoltage"),
         StatusBit::new(1, "ambient_overtemperature", "Ambient temperature too high"),
         StatusBit::new(4, "fan_failure", "Fan failure"),
@@ -1763,7 +2030,7 @@ impl ExtendedAlarms {
 
 impl Word for ExtendedAlarms {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u16> = Legend::Bits(&[
         StatusBit::alarm(0, "hardware_address_abnormal", "Hardware address of the module abnormal"),
         StatusBit::alarm(1, "input_common_mode_voltage_abnormal", "Common-mode voltage of the input abnormal"),
         StatusBit::fault(2, "main_relay_coil_short_circuit", "Coil of the main relay short-circuited"),
@@ -1866,7 +2133,7 @@ impl Alarms {
 
 impl Word for Alarms {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u32> = Legend::Bits(&[
         StatusBit::alarm(0, "output_overvoltage_lockout", "Locked out after an output overvoltage"),
         StatusBit::alarm(1, "ambient_overtemperature", "Ambient temperature too high"),
         StatusBit::fault(2, "module_failure", "Module failure"),

@@ -464,7 +464,7 @@ pub const SET_ACCESS_2: Access =
 ///
 /// Erratum X6: printed is "03, 10, 41 and 42 without a radix", used is "hexadecimal", because 41 and 42
 /// are called 0x41 and 0x42 below the examples, where all bytes are hexadecimal.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeaderFunction {
     /// 3: `set`.
     Set,
@@ -478,7 +478,22 @@ pub enum HeaderFunction {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeaderFunction {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeaderFunction {}
+
+impl core::hash::Hash for HeaderFunction {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeaderFunction {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -523,8 +538,7 @@ impl HeaderFunction {
 
 impl Word for HeaderFunction {
     type Raw = u8;
-    const LEGEND: Legend<Self> =
-        Legend::Names(&[(Self::Set, "set"), (Self::Read, "read"), (Self::Float, "float"), (Self::Integer, "integer")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(3, "set"), (16, "read"), (65, "float"), (66, "integer")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -536,7 +550,7 @@ impl Word for HeaderFunction {
 /// Erratum X7: printed is "F0 for normal, others for a fault; of these only F2, in replies to a setting
 /// that failed", used is "F2 as failed, others without a name", because no other number is printed; all
 /// but F0 get the note `error_code`.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeaderResult {
     /// 240: `normal`.
     Normal,
@@ -546,7 +560,22 @@ pub enum HeaderResult {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeaderResult {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeaderResult {}
+
+impl core::hash::Hash for HeaderResult {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeaderResult {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -587,7 +616,7 @@ impl HeaderResult {
 
 impl Word for HeaderResult {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Failed, "failed")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(240, "normal"), (242, "failed")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -598,7 +627,7 @@ impl Word for HeaderResult {
 ///
 /// Erratum X36: printed is "dial setting, dial mode and dial-up address beside DIP switch", used is
 /// "DIP switch", because 4 uses dial mode and DIP switch for the same mode.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum AddressMode {
     /// 0: `automatic`.
     Automatic,
@@ -608,7 +637,22 @@ pub enum AddressMode {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for AddressMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for AddressMode {}
+
+impl core::hash::Hash for AddressMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl AddressMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -649,13 +693,13 @@ impl AddressMode {
 
 impl Word for AddressMode {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(0, "automatic"), (65_536, "dip_switch")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
 
 /// Power switch (0 is start-up). Section 2.3.1, 3.1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Power {
     /// 0: `start_up`.
     StartUp,
@@ -665,7 +709,22 @@ pub enum Power {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Power {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Power {}
+
+impl core::hash::Hash for Power {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Power {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -706,13 +765,13 @@ impl Power {
 
 impl Word for Power {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::StartUp, "start_up"), (Self::ShutDown, "shut_down")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(0, "start_up"), (65_536, "shut_down")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
 
 /// Reset of a protection. Section 3.1.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Reset {
     /// 0: `disabled`.
     Disabled,
@@ -722,7 +781,22 @@ pub enum Reset {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Reset {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Reset {}
+
+impl core::hash::Hash for Reset {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Reset {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -763,7 +837,7 @@ impl Reset {
 
 impl Word for Reset {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Reset, "reset")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(0, "disabled"), (65_536, "reset")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
@@ -772,7 +846,7 @@ impl Word for Reset {
 ///
 /// Erratum X29: printed is "relevance permission of module output overvoltage protection", used is "the
 /// word as printed", because it may be that modules trip together, but nothing else is said.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Relevance {
     /// 0: `enabled`.
     Enabled,
@@ -782,7 +856,22 @@ pub enum Relevance {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Relevance {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Relevance {}
+
+impl core::hash::Hash for Relevance {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Relevance {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -823,7 +912,7 @@ impl Relevance {
 
 impl Word for Relevance {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Enabled, "enabled"), (Self::Disabled, "disabled")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(0, "enabled"), (65_536, "disabled")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
@@ -831,7 +920,7 @@ impl Word for Relevance {
 /// Input mode. Section 3.1.
 ///
 /// AC is the default.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum InputMode {
     /// 1: `ac`.
     Ac,
@@ -841,7 +930,22 @@ pub enum InputMode {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for InputMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for InputMode {}
+
+impl core::hash::Hash for InputMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl InputMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -882,7 +986,7 @@ impl InputMode {
 
 impl Word for InputMode {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Ac, "ac"), (Self::Dc, "dc")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(1, "ac"), (2, "dc")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
@@ -893,7 +997,7 @@ impl Word for InputMode {
 ///
 /// Erratum X17: printed is "the modes 1, 2, 3 and 5", used is "no name for 4", because nothing is said
 /// about it.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ActiveInput {
     /// 1: `single_phase_ac`.
     SinglePhaseAc,
@@ -907,7 +1011,22 @@ pub enum ActiveInput {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ActiveInput {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ActiveInput {}
+
+impl core::hash::Hash for ActiveInput {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ActiveInput {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -952,12 +1071,8 @@ impl ActiveInput {
 
 impl Word for ActiveInput {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::SinglePhaseAc, "single_phase_ac"),
-        (Self::Dc, "dc"),
-        (Self::ThreePhaseAc, "three_phase_ac"),
-        (Self::ModeMismatch, "mode_mismatch"),
-    ]);
+    const LEGEND: Legend<u32> =
+        Legend::Names(&[(1, "single_phase_ac"), (2, "dc"), (3, "three_phase_ac"), (5, "mode_mismatch")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
@@ -1051,7 +1166,7 @@ impl Alarms {
 
 impl Word for Alarms {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u32> = Legend::Bits(&[
         StatusBit::fault(0, "fault", "Module fault"),
         StatusBit::alarm(1, "protection", "Module protection active"),
         StatusBit::fault(3, "internal_communication_fault", "Communication inside the module (SCI) failed"),

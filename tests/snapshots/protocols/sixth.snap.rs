@@ -276,7 +276,7 @@ pub const REPORT_B_ACCESS: Access =
     Access::new("report_b", &[None, None, None, None, Some(Who::One)]).report(&FRAME.id(Identifier::FUNCTION, 0x2));
 
 /// What a request wants, or what became of it. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum HeaderOperation {
     /// 64: `read`.
     Read,
@@ -292,7 +292,22 @@ pub enum HeaderOperation {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for HeaderOperation {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for HeaderOperation {}
+
+impl core::hash::Hash for HeaderOperation {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl HeaderOperation {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -339,19 +354,14 @@ impl HeaderOperation {
 
 impl Word for HeaderOperation {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Read, "read"),
-        (Self::Write, "write"),
-        (Self::ReadValue, "read_value"),
-        (Self::Written, "written"),
-        (Self::Refused, "refused"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(64, "read"), (34, "write"), (75, "read_value"), (96, "written"), (128, "refused")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// State of the output. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum MeasurementAOutput {
     /// 0: `off`.
     Off,
@@ -361,7 +371,22 @@ pub enum MeasurementAOutput {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for MeasurementAOutput {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for MeasurementAOutput {}
+
+impl core::hash::Hash for MeasurementAOutput {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl MeasurementAOutput {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -402,13 +427,13 @@ impl MeasurementAOutput {
 
 impl Word for MeasurementAOutput {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::On, "on")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (1, "on")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Mode of operation. Section 3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ModeValue {
     /// 0: `standby`.
     Standby,
@@ -424,7 +449,22 @@ pub enum ModeValue {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ModeValue {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ModeValue {}
+
+impl core::hash::Hash for ModeValue {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ModeValue {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -471,19 +511,14 @@ impl ModeValue {
 
 impl Word for ModeValue {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::Standby, "standby"),
-        (Self::Voltage, "voltage"),
-        (Self::CurrentLimit, "current_limit"),
-        (Self::PowerLimit, "power_limit"),
-        (Self::Fault, "fault"),
-    ]);
+    const LEGEND: Legend<u8> =
+        Legend::Names(&[(0, "standby"), (1, "voltage"), (2, "current_limit"), (3, "power_limit"), (4, "fault")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Input. Section 4.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Input {
     /// 0: `none`.
     None,
@@ -495,7 +530,22 @@ pub enum Input {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Input {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Input {}
+
+impl core::hash::Hash for Input {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Input {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -538,13 +588,13 @@ impl Input {
 
 impl Word for Input {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::None, "none"), (Self::Ac, "ac"), (Self::Dc, "dc")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "none"), (1, "ac"), (2, "dc")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Output switch. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum OutputCommand {
     /// 1: `on`.
     On,
@@ -554,7 +604,22 @@ pub enum OutputCommand {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for OutputCommand {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for OutputCommand {}
+
+impl core::hash::Hash for OutputCommand {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl OutputCommand {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -595,13 +660,13 @@ impl OutputCommand {
 
 impl Word for OutputCommand {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(1, "on"), (2, "off")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
 
 /// Why a request is refused. Section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum RefusalReason {
     /// 1: `no_such_index`.
     NoSuchIndex,
@@ -613,7 +678,22 @@ pub enum RefusalReason {
     Unknown(u32),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for RefusalReason {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for RefusalReason {}
+
+impl core::hash::Hash for RefusalReason {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl RefusalReason {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -656,17 +736,13 @@ impl RefusalReason {
 
 impl Word for RefusalReason {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(&[
-        (Self::NoSuchIndex, "no_such_index"),
-        (Self::ReadOnly, "read_only"),
-        (Self::OutOfRange, "out_of_range"),
-    ]);
+    const LEGEND: Legend<u32> = Legend::Names(&[(1, "no_such_index"), (2, "read_only"), (3, "out_of_range")]);
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u32 = Self::raw;
 }
 
 /// Whether outputs may be on. Section 6.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum KeepAliveOutputs {
     /// 0: `off`.
     Off,
@@ -676,7 +752,22 @@ pub enum KeepAliveOutputs {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for KeepAliveOutputs {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for KeepAliveOutputs {}
+
+impl core::hash::Hash for KeepAliveOutputs {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl KeepAliveOutputs {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -717,7 +808,7 @@ impl KeepAliveOutputs {
 
 impl Word for KeepAliveOutputs {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::Allowed, "allowed")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (1, "allowed")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -780,7 +871,7 @@ impl Conditions {
 
 impl Word for Conditions {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u32> = Legend::Bits(&[
         StatusBit::new(0, "output_on", "Output is on"),
         StatusBit::new(1, "derating", "Output is derated"),
         StatusBit::new(2, "fan_fault", "Fan failed"),
@@ -838,7 +929,7 @@ impl FirmwareValue {
 
 impl Word for FirmwareValue {
     type Raw = u64;
-    const LEGEND: Legend<Self> = Legend::Text(
+    const LEGEND: Legend<u64> = Legend::Text(
         3,
         &[
             Piece::number::<u8>(Self::MAJOR),

@@ -328,7 +328,7 @@ const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
 ///
 /// Erratum T23: printed is "two values each of mode and operation, and no bits 9 to 15 of the faults",
 /// used is "raw values and bits without a name, kept with a note", because nothing is said about them.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum ControlMode {
     /// 0: `local`.
     Local,
@@ -338,7 +338,22 @@ pub enum ControlMode {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for ControlMode {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for ControlMode {}
+
+impl core::hash::Hash for ControlMode {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl ControlMode {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -379,7 +394,7 @@ impl ControlMode {
 
 impl Word for ControlMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Local, "local"), (Self::Remote, "remote")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "local"), (1, "remote")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -391,7 +406,7 @@ impl Word for ControlMode {
 ///
 /// Erratum T23: printed is "two values each of mode and operation, and no bits 9 to 15 of the faults",
 /// used is "raw values and bits without a name, kept with a note", because nothing is said about them.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Operation {
     /// 0: `off`.
     Off,
@@ -401,7 +416,22 @@ pub enum Operation {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Operation {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Operation {}
+
+impl core::hash::Hash for Operation {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Operation {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -442,13 +472,13 @@ impl Operation {
 
 impl Word for Operation {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::On, "on")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "off"), (128, "on")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
 /// Advice on replacement. Section 3.3.
-#[derive(Clone, Copy, Debug, PartialEq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub enum Advice {
     /// 0: `none`.
     None,
@@ -458,7 +488,22 @@ pub enum Advice {
     Unknown(u8),
 }
 
+/// Two values are equal if they have the same raw number.
+impl PartialEq for Advice {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.raw() == other.raw()
+    }
+}
+
 impl Eq for Advice {}
+
+impl core::hash::Hash for Advice {
+    #[inline]
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        core::hash::Hash::hash(&self.raw(), state);
+    }
+}
 
 impl Advice {
     /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -499,7 +544,7 @@ impl Advice {
 
 impl Word for Advice {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::None, "none"), (Self::Replace, "replace")]);
+    const LEGEND: Legend<u8> = Legend::Names(&[(0, "none"), (1, "replace")]);
     const FROM_RAW: fn(u8) -> Self = Self::from_raw;
     const RAW: fn(Self) -> u8 = Self::raw;
 }
@@ -563,7 +608,7 @@ impl Status {
 
 impl Word for Status {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Bits(&[
+    const LEGEND: Legend<u16> = Legend::Bits(&[
         StatusBit::fault(0, "hardware_fault", "Hardware fault"),
         StatusBit::fault(1, "overvoltage", "Voltage too high (software OVP)"),
         StatusBit::fault(2, "undervoltage", "Voltage too low (software UVP)"),

@@ -8,7 +8,7 @@ use super::plan::word::{Enumeration, Packed, PackedPart, Piece, StatusBit, Statu
 
 /// Emits an enum with a variant a name, and one for all other values.
 ///
-/// `Eq` is not derived, since that would be a function that does nothing in each of many enums.
+/// `PartialEq` is not derived, since a number that has a name can also be given as one without.
 pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
     let Enumeration { name, comment, raw, values, unknown } = enumeration;
     let optional = derives.word(name);
@@ -18,14 +18,29 @@ pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
     let texts = values.iter().map(|value| &value.name);
     quote! {
         #comment
-        #[derive(Clone, Copy, Debug, PartialEq, Hash)]
+        #[derive(Clone, Copy, Debug)]
         pub enum #name {
             #(#definitions)*
             /// A value without a name; it is sent as it is.
             #unknown(#raw),
         }
 
+        /// Two values are equal if they have the same raw number.
+        impl PartialEq for #name {
+            #[inline]
+            fn eq(&self, other: &Self) -> bool {
+                self.raw() == other.raw()
+            }
+        }
+
         impl Eq for #name {}
+
+        impl core::hash::Hash for #name {
+            #[inline]
+            fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+                core::hash::Hash::hash(&self.raw(), state);
+            }
+        }
 
         impl #name {
             /// Returns the value that stands for a raw number, whether it has a name or not.
@@ -58,7 +73,7 @@ pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
 
         impl Word for #name {
             type Raw = #raw;
-            const LEGEND: Legend<Self> = Legend::Names(&[#((Self::#variants, #texts)),*]);
+            const LEGEND: Legend<#raw> = Legend::Names(&[#((#raws, #texts)),*]);
             const FROM_RAW: fn(#raw) -> Self = Self::from_raw;
             const RAW: fn(Self) -> #raw = Self::raw;
         }
@@ -112,7 +127,7 @@ pub fn status_word(StatusWord { name, comment, raw, bits }: &StatusWord, derives
 
         impl Word for #name {
             type Raw = #raw;
-            const LEGEND: Legend<Self> = Legend::Bits(&[#(#rows),*]);
+            const LEGEND: Legend<#raw> = Legend::Bits(&[#(#rows),*]);
             const FROM_RAW: fn(#raw) -> Self = Self;
             const RAW: fn(Self) -> #raw = |word| word.0;
         }
@@ -177,7 +192,7 @@ fn packed_word(Packed { name, bytes, parts, pieces, .. }: &Packed) -> TokenStrea
     quote! {
         impl Word for #name {
             type Raw = u64;
-            const LEGEND: Legend<Self> = Legend::Text(#bytes, &[#(#pieces),*]);
+            const LEGEND: Legend<u64> = Legend::Text(#bytes, &[#(#pieces),*]);
             const FROM_RAW: fn(u64) -> Self = |raw| {
                 let data = left_aligned(raw, #bytes);
                 Self { #(#fields: Self::#constants.read(&data)),* }
