@@ -63,15 +63,21 @@ impl<'a> Extent<'a> {
 
     /// Tests whether it can have some number of data bytes.
     pub fn has_length(self, length: usize) -> bool {
-        self.all_lengths().contains(&length)
+        match self.varying().filter(|_| self.lengths().is_empty()) {
+            Some(field) => {
+                let enough = first(field.least, field.most, |count| self.bytes_with(Some(count)) >= length);
+                self.bytes_with(Some(enough)) == length
+            }
+            None => self.all_lengths().contains(&length),
+        }
     }
 
     /// Says how many data bytes it has if it cannot have `length`: `9 or 11`, `5 to 40`, or `3, 5, ... 33`.
     pub fn other_lengths(self, length: usize) -> Option<String> {
-        let lengths = self.all_lengths();
-        if lengths.contains(&length) {
+        if self.has_length(length) {
             return None;
         }
+        let lengths = self.all_lengths();
         Some(match lengths.as_slice() {
             [first, _, .., last] if last - first == lengths.len() - 1 => format!("{first} to {last}"),
             [first, second, _, .., last] => format!("{first}, {second}, ... {last}"),
@@ -93,7 +99,7 @@ impl<'a> Extent<'a> {
     /// Returns how many elements the field of varying length has in some number of data bytes.
     pub fn elements_in(self, length: usize) -> Option<usize> {
         let field = self.varying()?;
-        (0..=field.most).rev().find(|count| self.bytes_with(Some(*count)) <= length)
+        first(0, field.most + 1, |count| self.bytes_with(Some(count)) > length).checked_sub(1)
     }
 
     /// Returns how many data bytes it has with some number of elements in fields of varying length, or with all.
@@ -118,4 +124,17 @@ impl<'a> Extent<'a> {
         let mut texts = self.signals().filter_map(|(_, signal)| Some((signal, signal.run?)));
         texts.find(|(_, run)| run.varies())
     }
+}
+
+/// Returns the first number from `low` to `high` for which something holds, or `high`. It holds for all that follow, too.
+fn first(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
 }
