@@ -9,6 +9,7 @@ use canspec_codegen::source::Source;
 use canspec_codegen::syntax::ast::Key;
 use canspec_codegen::{Outcome, compile};
 use canspec_tests::{Frames, models};
+use rayon::prelude::*;
 use serde_yaml::{Mapping, Value};
 
 const REFERENCE: &str = include_str!("../../docs/language.md");
@@ -246,20 +247,16 @@ fn trials() -> Vec<Trial> {
         Ok(after) if before.differs(&made, &after, &frames) => Effect::Change,
         Ok(_) => Effect::Nothing,
     };
-    let mut trials = Vec::new();
-    for place in places(&spec) {
-        for key in Key::ALL.iter().copied() {
-            for sample in samples(key) {
-                let changed = with(&spec, &place, key, sample);
-                if changed == spec {
-                    continue;
-                }
-                let effect = effect(&changed);
-                trials.push(Trial { place: place.clone(), key, sample, effect });
-            }
-        }
-    }
-    trials
+    let places = places(&spec);
+    let samples = places.iter().flat_map(|place| {
+        let keys = Key::ALL.iter().flat_map(|key| samples(*key).into_iter().map(|sample| (*key, sample)));
+        keys.map(move |(key, sample)| (place, key, sample))
+    });
+    let trial = |(place, key, sample): (&Place, Key, &'static str)| {
+        let changed = with(&spec, place, key, sample);
+        (changed != spec).then(|| Trial { place: place.clone(), key, sample, effect: effect(&changed) })
+    };
+    samples.collect::<Vec<_>>().into_par_iter().filter_map(trial).collect()
 }
 
 impl Trial {

@@ -7,12 +7,14 @@
 
 use std::fs;
 use std::ops::Range;
+use std::path::Path;
 
 use canspec_codegen::emit::{Options, rust};
 use canspec_codegen::source::Source;
 use canspec_codegen::{Outcome, compile};
 use canspec_tests::specs;
 use fastrand::Rng;
+use rayon::prelude::*;
 
 const MISTAKES_A_SPEC: usize = 100;
 
@@ -64,28 +66,51 @@ enum Notice {
     OfCode(String),
 }
 
-#[test]
-fn nine_of_ten_mistakes_are_noticed_in_their_line() {
-    let (mut all, mut in_the_line, mut harmful) = (0, 0, 0);
-    for path in specs("specs") {
+/// How many mistakes were made, and what came of them.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    all: usize,
+    in_the_line: usize,
+    harmful: usize,
+}
+
+impl Count {
+    /// Makes mistakes in a spec.
+    fn of(path: &Path) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let text = fs::read_to_string(&path).expect("a spec that ships can be read");
+        let text = fs::read_to_string(path).expect("a spec that ships can be read");
         let lines: Vec<_> = text.lines().collect();
         let right = code(&compiled(&lines, 0..0, None));
         let mut random = Rng::with_seed(7);
+        let mut count = Self::default();
         for turn in 0..MISTAKES_A_SPEC {
             let mistake = MISTAKES[turn % MISTAKES.len()];
             let (index, line, notice) = drawn(mistake, &lines, &right, &mut random);
             // Nothing contradicts what only the documentation says.
-            all += usize::from(notice != Notice::OfDocumentation);
-            in_the_line += usize::from(notice == Notice::InTheLine);
-            harmful += usize::from(matches!(notice, Notice::OfCode(_)));
+            count.all += usize::from(notice != Notice::OfDocumentation);
+            count.in_the_line += usize::from(notice == Notice::InTheLine);
+            count.harmful += usize::from(matches!(notice, Notice::OfCode(_)));
             if notice != Notice::InTheLine {
                 let line = line.unwrap_or_else(|| format!("without {}", lines[index].trim()));
                 eprintln!("{name}:{}: {mistake:?}: {}\n    {notice:?}", index + 1, line.trim());
             }
         }
+        count
     }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            all: self.all + other.all,
+            in_the_line: self.in_the_line + other.in_the_line,
+            harmful: self.harmful + other.harmful,
+        }
+    }
+}
+
+#[test]
+fn nine_of_ten_mistakes_are_noticed_in_their_line() {
+    let counts = specs("specs").into_par_iter().map(|path| Count::of(&path));
+    let Count { all, in_the_line, harmful } = counts.reduce(Count::default, Count::and);
     eprintln!("of {all} mistakes {in_the_line} are noticed in their line, {harmful} do harm unnoticed");
     assert!(in_the_line * 100 >= NOTICED_IN_THE_LINE * all, "{in_the_line} of {all} in their line");
     assert!(harmful * 100 <= HARMFUL * all, "{harmful} of {all} do harm unnoticed");

@@ -12,6 +12,7 @@ use canspec_runtime::transfers::{Assembler, Sender, Transferred, Transport, Whol
 use canspec_tests::long::{is_same, long, member};
 use canspec_tests::{Optional, TransferredVisitor, protocol, received, visit_transferred};
 use fastrand::Rng;
+use rayon::prelude::*;
 
 /// How many random values of each message are sent.
 const MESSAGES: usize = 300;
@@ -209,25 +210,37 @@ impl Random {
         let (extent, blank) = (long::<L>(protocol).extent(layout), blank(protocol, layout));
         let sizes: Vec<_> = (1..=extent.longest()).filter(|size| extent.has_length(*size)).collect();
         let mut rng = Rng::with_seed(0x7247);
-        for _ in 0..MESSAGES {
+        let mut data = || {
             let size = *rng.choice(&sizes).expect("it has some size");
-            let data: Vec<_> = std::iter::repeat_with(|| rng.u8(..)).take(size).collect();
-            let values = L::decode(&data).expect("it is long enough");
-            let mut buffer = vec![0; L::LONGEST];
-            // Values outside the limits of the charger are refused.
-            let Ok(sender) = values.sender(&blank, &mut buffer) else { continue };
-            let (whole, frames) = exchange(sender).expect("every packet came");
-            // Frames of ISO-TP have the identifier of their message, with what the transport sends in it.
-            let id = if is_joined(protocol, layout) { frames[0].id } else { blank.raw_id() };
-            assert_eq!((whole.values(), raw_id(&whole)), (Some(values), id), "{}", L::MESSAGE);
-            assert_eq!(whole.data().len(), size, "{}", L::MESSAGE);
-            self.whole += 1;
-            if frames.len() > 1 || is_joined(protocol, layout) {
-                agrees(protocol, id, whole.data(), &frames);
-                self.in_packets += 1;
-            }
-        }
+            std::iter::repeat_with(|| rng.u8(..)).take(size).collect::<Vec<_>>()
+        };
+        let all: Vec<_> = std::iter::repeat_with(&mut data).take(MESSAGES).collect();
+        let sent: Vec<_> = all.par_iter().filter_map(|data| sent::<L>(protocol, layout, &blank, data)).collect();
+        self.whole += sent.len();
+        self.in_packets += sent.into_iter().filter(|is_in_packets| *is_in_packets).count();
     }
+}
+
+/// Sends values, and tells whether they went in packets. Those outside the limits of the charger are refused.
+fn sent<L: Transferred + PartialEq + Debug>(
+    protocol: &Protocol,
+    layout: &FrameLayout,
+    blank: &canspec_runtime::Frame,
+    data: &[u8],
+) -> Option<bool> {
+    let values = L::decode(data).expect("it is long enough");
+    let mut buffer = vec![0; L::LONGEST];
+    let sender = values.sender(blank, &mut buffer).ok()?;
+    let (whole, frames) = exchange(sender).expect("every packet came");
+    // Frames of ISO-TP have the identifier of their message, with what the transport sends in it.
+    let id = if is_joined(protocol, layout) { frames[0].id } else { blank.raw_id() };
+    assert_eq!((whole.values(), raw_id(&whole)), (Some(values), id), "{}", L::MESSAGE);
+    assert_eq!(whole.data().len(), data.len(), "{}", L::MESSAGE);
+    let is_in_packets = frames.len() > 1 || is_joined(protocol, layout);
+    if is_in_packets {
+        agrees(protocol, id, whole.data(), &frames);
+    }
+    Some(is_in_packets)
 }
 
 /// Tests whether no frame is the message itself, however short it is.
