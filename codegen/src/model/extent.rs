@@ -64,10 +64,9 @@ impl<'a> Extent<'a> {
     /// Tests whether it can have some number of data bytes.
     pub fn has_length(self, length: usize) -> bool {
         match self.varying().filter(|_| self.lengths().is_empty()) {
-            Some(field) => {
-                let enough = first(field.least, field.most, |count| self.bytes_with(Some(count)) >= length);
-                self.bytes_with(Some(enough)) == length
-            }
+            Some(field) => self
+                .elements_in(length)
+                .is_some_and(|count| count >= field.least && self.bytes_with(Some(count)) == length),
             None => self.all_lengths().contains(&length),
         }
     }
@@ -99,7 +98,17 @@ impl<'a> Extent<'a> {
     /// Returns how many elements the field of varying length has in some number of data bytes.
     pub fn elements_in(self, length: usize) -> Option<usize> {
         let field = self.varying()?;
-        first(0, field.most + 1, |count| self.bytes_with(Some(count)) > length).checked_sub(1)
+        // More elements never take fewer bytes.
+        let (mut fitting, mut beyond) = (0, field.most + 1);
+        while fitting < beyond {
+            let middle = usize::midpoint(fitting, beyond);
+            if self.bytes_with(Some(middle)) <= length {
+                fitting = middle + 1;
+            } else {
+                beyond = middle;
+            }
+        }
+        fitting.checked_sub(1)
     }
 
     /// Returns how many data bytes it has with some number of elements in fields of varying length, or with all.
@@ -124,17 +133,4 @@ impl<'a> Extent<'a> {
         let mut texts = self.signals().filter_map(|(_, signal)| Some((signal, signal.run?)));
         texts.find(|(_, run)| run.varies())
     }
-}
-
-/// Returns the first number from `low` to `high` for which something holds, or `high`. It holds for all that follow, too.
-fn first(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
-    while low < high {
-        let middle = usize::midpoint(low, high);
-        if holds(middle) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    low
 }
