@@ -16,8 +16,7 @@ from pathlib import Path
 
 import cantools
 
-# How many random frames are compared of a protocol, and of a spec that shows one thing.
-OF_A_PROTOCOL, OF_A_FEATURE = 10_000, 2_000
+COUNT = 10_000
 UNITS = {"°C": "degC", "Ω": "Ohm"}
 # Nodes of protocols that have none from 0 to 3.
 NODES = {"groups": "256-259", "named_addresses": "80-81", "reports_only": "256-259", "trio": "224-227"}
@@ -243,7 +242,7 @@ def decoding(protocol, frames):
     return causes, failures
 
 
-def encoding(protocol, frames, chance, most):
+def encoding(protocol, frames, chance):
     """Encodes other values by both programs; returns how many value sets, and the rest as `decoding` does."""
     for time, frame in enumerate(frames):
         frame["time"] = time
@@ -251,7 +250,7 @@ def encoding(protocol, frames, chance, most):
     ours = protocol.encode(frames)
     causes, failures, count = Counter(), [], 0
     for frame, (values, halfway) in zip(frames, sets):
-        if values is None or frame["time"] not in ours or count == most:
+        if values is None or frame["time"] not in ours or count == COUNT:
             continue
         count += 1
         theirs = protocol.message(frame).encode(values, strict=False)
@@ -268,13 +267,12 @@ def shown(causes):
 def compared(canspec, random_frames, spec):
     """Compares all frames of a spec; returns how many comparisons there were, the causes, and the failures."""
     protocol = Protocol(canspec, spec)
-    random_count = OF_A_PROTOCOL if Path(spec).parent.name == "specs" else OF_A_FEATURE
     documented = protocol.decode(protocol.examples())
-    frames = documented + protocol.decode(run(random_frames, "known", spec, random_count, 1).splitlines())
+    frames = documented + protocol.decode(run(random_frames, "known", spec, COUNT, 1).splitlines())
     held = [frame for frame in frames if protocol.holds(frame)]
     decoded, failures = decoding(protocol, held)
-    others = protocol.decode(run(random_frames, "known", spec, random_count * 21 // 20, 2).splitlines())
-    sets, encoded, wrong = encoding(protocol, list(filter(protocol.holds, others)), random.Random(3), random_count)
+    others = protocol.decode(run(random_frames, "known", spec, COUNT * 21 // 20, 2).splitlines())
+    sets, encoded, wrong = encoding(protocol, list(filter(protocol.holds, others)), random.Random(3))
     few = Protocol(canspec, spec, "--nodes", NODES.get(Path(spec).stem, "0-3"))
     found = [frame for frame in frames if few.message(frame) and few.holds(frame)]
     of_nodes, astray = decoding(few, found)
