@@ -37,6 +37,10 @@ sweep:
 random-specs count="10000" first="0":
     cargo run --quiet --bin random_specs -- {{count}} {{first}}
 
+# Random programs on a bus that loses and delays replies: what the client says of them must be true, and in time.
+deep count="200000":
+    CANSPEC_DEEP={{count}} cargo test --quiet --release --package canspec-runtime --lib random_programs -- --nocapture
+
 # A station whose modules fail, for some virtual minutes by each seed, and how often what happened.
 seeds count="10000" first="0" minutes="120":
     cargo run --quiet --release --package canspec-station --example seeds -- {{count}} {{first}} {{minutes}}

@@ -91,7 +91,7 @@ pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     entries: [Option<Entry<P>>; N],
     groups: Groups<G>,
     health: Health,
-    /// When the next frame may be sent, unless it may be sent at once.
+    /// When the next frame may be sent, or could be. Long after that it is forgotten.
     free: Option<u32>,
     /// Number of the next ticket.
     next: u32,
@@ -317,7 +317,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Says what to do next.
     pub fn poll(&mut self, now: u32) -> Step {
-        self.free = self.free.filter(|free| !has_come(*free, now));
+        self.free = self.free.filter(|_| self.idle_from().is_some_and(|from| !has_come(from, now)));
         let ended = self.pass(now);
         if let Some(Step::Done(ticket)) = ended {
             self.lead(ticket);
@@ -326,72 +326,76 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         ended.or_else(|| self.send(now)).unwrap_or_else(|| Step::Wait(self.deadline(now)))
     }
 
+    /// Returns from when on nothing was sent for so long that nothing which was due then can still wait for answers.
+    fn idle_from(&self) -> Option<u32> {
+        Some(self.free?.wrapping_add(self.pace.wait).wrapping_add(self.pace.late).wrapping_add(1))
+    }
+
     /// Lets time pass. Begins rounds, and ends a request, and says how.
     fn pass(&mut self, now: u32) -> Option<Step> {
         let Self { entries, groups, health, .. } = self;
-        let (mut ended, mut are_leaders_wanted) = (None, false);
+        let (mut ended, mut is_led) = (None, false);
         for slot in entries {
             slot.take_if(|entry| !entry.goes_on(now));
+            is_led |= slot.as_ref().is_some_and(|entry| entry.leader.is_some());
             let Some(entry) = slot.as_mut().filter(|entry| ended.is_none() && entry.awaits()) else { continue };
             let group = groups.asked_by(entry).map(|group| &*group);
             ended = entry.ended(now, group);
             if let Some(Step::Lost(_) | Step::Missing { .. }) = ended {
                 health.lost(&entry.silent(group));
             }
-            are_leaders_wanted |= entry.leader.is_some_and(|leader| leader.is_wanted);
         }
-        if are_leaders_wanted {
-            self.renew_leaders();
+        if is_led {
+            self.doubt_leaders(now);
+            self.renew_leaders(now);
         }
         ended
     }
 
     /// Says what a received frame is.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
-        let awaiting = self.asking(frame, Entry::awaits);
+        let asking = self.asking(frame);
         let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
-            Err(problem) => return self.unrecognised(frame, problem, awaiting),
+            Err(problem) => return self.unrecognised(frame, problem, asking),
         };
         let node = sender(&received);
         if let Some(node) = node {
             self.health.heard(node);
             self.groups.heard(node);
             let entries = self.entries.iter_mut().flatten();
-            entries.filter(|entry| entry.node == Some(node)).for_each(|entry| entry.is_heard = true);
+            entries.filter(|entry| entry.node() == Some(node)).for_each(|entry| entry.is_heard = true);
         }
-        if let Some(entry) = awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
-            let is_refusal = entry.request.refuses(frame) == Some(true);
-            let begun = entry.begun;
-            let heard = entry.answered(received, is_refusal, self.model, self.groups.asked_by(entry));
-            let is_over = entry.is_resting();
-            if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
-                self.put_off(node, begun);
-            }
-            if let (Heard::Answer { ticket, .. }, true) = (&heard, is_over) {
-                self.lead(*ticket);
-            }
+        let Some(entry) = asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) else {
+            return Heard::Other(received);
+        };
+        if let Some(heard) = entry.too_late(received) {
             return heard;
         }
-        let past = self.asking(frame, Entry::is_resting).and_then(|place| self.entries.get(place)?.as_ref());
-        past.and_then(|entry| entry.too_late(received)).unwrap_or(Heard::Other(received))
+        let is_refusal = entry.request.refuses(frame) == Some(true);
+        let begun = entry.begun;
+        let heard = entry.answered(received, is_refusal, self.model, self.groups.asked_by(entry));
+        let is_over = entry.is_resting();
+        if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
+            self.put_off(node, begun);
+        }
+        if let (Heard::Answer { ticket, .. }, true) = (&heard, is_over) {
+            self.lead(*ticket);
+        }
+        heard
     }
 
-    /// Returns the place of the first request of some kind that a frame answers.
-    fn asking(&self, frame: &impl embedded_can::Frame, is_one: impl Fn(&Entry<P>) -> bool) -> Option<usize> {
-        let mut slots = self.entries.iter();
-        slots.position(|slot| slot.as_ref().is_some_and(|entry| is_one(entry) && self.groups.is_answer(entry, frame)))
+    /// Returns the place of the request that a frame answers.
+    fn asking(&self, frame: &impl embedded_can::Frame) -> Option<usize> {
+        let entries = self.entries.iter().enumerate().filter_map(|(place, slot)| Some((place, slot.as_ref()?)));
+        let asking = entries.filter(|(_, entry)| entry.claim().is_some() && self.groups.is_answer(entry, frame));
+        asking.min_by_key(|(_, entry)| entry.claim()).map(|(place, _)| place)
     }
 
     /// Says what a frame is that is not recognised.
-    fn unrecognised(
-        &mut self,
-        frame: &impl embedded_can::Frame,
-        problem: Problem,
-        awaiting: Option<usize>,
-    ) -> Heard<P> {
-        match awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
-            Some(entry) if problem == Problem::Length => {
+    fn unrecognised(&mut self, frame: &impl embedded_can::Frame, problem: Problem, asking: Option<usize>) -> Heard<P> {
+        match asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
+            Some(entry) if problem == Problem::Length && entry.awaits() => {
                 let is_group_known = self.groups.is_asked_by(entry);
                 entry.answered_short(frame, is_group_known)
             }
@@ -402,7 +406,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Notes that a module has heard what was sent at a time.
     fn put_off(&mut self, node: Option<u8>, sent: u32) {
         let entries = self.entries.iter_mut().flatten();
-        entries.filter(|entry| node.is_some() && entry.node == node).for_each(|entry| entry.put_off(sent));
+        entries.filter(|entry| node.is_some() && entry.node() == node).for_each(|entry| entry.put_off(sent));
     }
 
     const fn ticket(&self) -> Ticket {
@@ -425,7 +429,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Sends the request that is to be sent first, if the bus is free.
     fn send(&mut self, now: u32) -> Option<Step> {
-        if self.free.is_some() {
+        if self.free.is_some_and(|free| !has_come(free, now)) {
             return None;
         }
         let mut first: Option<(usize, &Entry<P>)> = None;
@@ -439,7 +443,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let (place, _) = first?;
         let entry = self.entries.get_mut(place)?.as_mut()?;
         entry.start(now, self.groups.answering(&entry.request));
-        self.free = Some(now.wrapping_add(entry.pace.gap)).filter(|free| !has_come(*free, now));
+        self.free = Some(now.wrapping_add(entry.pace.gap));
         let (ticket, frame) = (entry.ticket, *entry.request.frame());
         if entry.sent == 1 {
             self.hold_back(ticket);
@@ -454,7 +458,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
         others.any(|other| {
             let is_first = other.is_to_go_before(own, now);
-            let is_awaited = || other.awaits() && other.deaf().is_none() && self.groups.is_asked_by(other);
+            let is_awaited = || other.listens() && self.groups.is_asked_by(other);
             (is_first || other.is_open(now)) && self.groups.is_like(own, other)
                 || (is_first || is_awaited()) && self.groups.is_shared(own, other)
         })
@@ -468,8 +472,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             State::Due { from } if earlier(from, free, now) => Some(free),
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
         };
-        let entries = self.entries.iter().flatten();
-        let times = entries.flat_map(|entry| [next(entry), entry.deaf(), entry.unheard_from()]).flatten();
+        let doubt = |entry: &Entry<P>| self.idle_from().filter(|_| entry.leader.is_some() && entry.due(now).is_some());
+        let times = |entry| [next(entry), entry.tail_until(), entry.unheard_from(), entry.overdue_from(), doubt(entry)];
+        let times = self.entries.iter().flatten().flat_map(times).flatten();
         // What is due and not sent waits for another entry.
         let times = times.filter(|time| !has_come(*time, now));
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })

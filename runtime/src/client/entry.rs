@@ -3,10 +3,10 @@
 use core::num::NonZeroU32;
 
 use super::group::Group;
-use super::hold::Hold;
+use super::hold::{Hold, Tail};
 use super::order::Leader;
 use super::{Heard, Nodes, Pace, Step, has_one_answer};
-use crate::clock::{earlier, has_come, is_later, later_of};
+use crate::clock::{earlier, has_come, is_later, later_of, latest_of};
 use crate::frame::classic;
 use crate::reply::error_code;
 use crate::{Protocol, Received, Replies, Request};
@@ -21,8 +21,7 @@ pub struct Ticket(pub(super) u32);
 pub struct Entry<P: Protocol> {
     pub ticket: Ticket,
     pub request: Request<P, ()>,
-    /// The module that it goes to, if it is one.
-    pub node: Option<u8>,
+    pub asked: Asked,
     pub pace: Pace,
     /// The time from one round to the next, if it is asked again and again.
     pub period: Option<NonZeroU32>,
@@ -46,6 +45,17 @@ pub struct Entry<P: Protocol> {
     pub unheard: u8,
     /// Whether the module that it goes to has sent anything since `begun`.
     pub is_heard: bool,
+}
+
+/// Whom an entry asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// A module.
+    One(u8),
+    /// Several modules, or one without a number below 256.
+    Several,
+    /// A group that has other members since then. So others can still answer.
+    Strangers,
 }
 
 /// Whether an entry is sent before all others that are due.
@@ -84,7 +94,7 @@ impl<P: Protocol> Entry<P> {
         Self {
             ticket,
             request,
-            node: request.module().and_then(|number| u8::try_from(number).ok()),
+            asked: request.module().and_then(|number| u8::try_from(number).ok()).map_or(Asked::Several, Asked::One),
             pace,
             period: None,
             is_spare: false,
@@ -99,6 +109,11 @@ impl<P: Protocol> Entry<P> {
             unheard: 0,
             is_heard: false,
         }
+    }
+
+    /// Returns the module that it goes to, if it is one.
+    pub const fn node(&self) -> Option<u8> {
+        if let Asked::One(node) = self.asked { Some(node) } else { None }
     }
 
     /// Returns since when the request is to be sent, if it is.
@@ -123,7 +138,13 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether it keeps a module alive, and has waited for the time from one request to the next.
     fn is_overdue(&self, now: u32) -> bool {
-        self.is_spare && self.due(now.wrapping_sub(self.pace.gap)).is_some()
+        self.overdue_from().is_some_and(|from| has_come(from, now))
+    }
+
+    /// Returns from when on it goes before others since it keeps a module alive, if it waits to be sent.
+    pub fn overdue_from(&self) -> Option<u32> {
+        let State::Due { from } = self.state else { return None };
+        self.is_spare.then(|| from.wrapping_add(self.pace.gap))
     }
 
     /// Tests whether this is to be sent before another one, which waits for its first answer that counts.
@@ -131,9 +152,25 @@ impl<P: Protocol> Entry<P> {
         (other.sent == 0 || other.deaf().is_some()) && self.is_before(other, now)
     }
 
-    /// Tests whether the entry would take a frame for its answer, now or later.
-    pub fn awaits(&self) -> bool {
+    /// Tests whether a frame that answers it belongs to it, also if it does not count.
+    pub const fn awaits(&self) -> bool {
         self.is_under_way() && !self.is_resting()
+    }
+
+    /// Tests whether an answer counts.
+    pub fn listens(&self) -> bool {
+        self.sent > 0 && self.deaf().is_none() && !self.is_resting()
+    }
+
+    /// Returns how surely an answer is for it, the least number first, or `None` if no answer can come. First comes what
+    /// was sent, then what waits to be sent, then what has ended. Last comes what strangers can answer.
+    pub fn claim(&self) -> Option<u8> {
+        Some(match self.state {
+            State::Due { .. } | State::Waiting { .. } if !self.is_under_way() => return None,
+            _ if self.asked == Asked::Strangers => 3,
+            State::Resting { .. } => 2,
+            State::Due { .. } | State::Waiting { .. } => u8::from(self.sent == 0),
+        })
     }
 
     /// Tests whether its round has ended.
@@ -143,16 +180,27 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether an answer to what was sent, or to what was held before, can come in this round.
     pub const fn is_under_way(&self) -> bool {
-        self.sent > 0 || matches!(self.hold, Some(Hold { deaf: Some(_), .. }))
+        self.sent > 0 || matches!(self.hold, Some(Hold { tail: Some(_), .. }))
     }
 
     /// Tests whether an answer can come.
     pub fn is_open(&self, now: u32) -> bool {
         match self.state {
-            State::Due { .. } => self.deaf().map_or(self.sent > 0, |deaf| !has_come(deaf, now)),
+            State::Due { .. } => self.sent > 0 || self.tail_until().is_some_and(|until| !has_come(until, now)),
             State::Waiting { .. } => true,
             State::Resting { until, .. } => !has_come(until, now),
         }
+    }
+
+    /// Returns until when an answer to what was sent, or to what it replaced, can come.
+    pub fn open_until(&self) -> Option<u32> {
+        let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
+        let own = match self.state {
+            State::Resting { until, .. } => Some(until),
+            State::Due { .. } | State::Waiting { .. } if self.sent > 0 => Some(self.until().wrapping_add(late)),
+            State::Due { .. } | State::Waiting { .. } => None,
+        };
+        latest_of(own, self.tail_until())
     }
 
     /// Notes that the request is sent.
@@ -164,6 +212,7 @@ impl<P: Protocol> Entry<P> {
             group.ask(self.ticket, self.sent == 0);
         }
         let deaf = self.deaf();
+        self.set_tail(deaf.map(Tail::Replaced));
         self.wait_for_leader();
         self.urgency = Urgency::Usual;
         self.sent = self.sent.saturating_add(1);
@@ -180,13 +229,9 @@ impl<P: Protocol> Entry<P> {
             self.unheard = 0;
             return Some(Step::Lost(self.ticket));
         }
-        let is_complete = group.is_some_and(|group| group.missing.is_empty()) && self.awaits() && self.deaf().is_none();
-        let until = match self.state {
-            State::Waiting { until } if is_complete || has_come(until, now) => until,
-            State::Due { from } if is_complete => from,
-            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => return None,
-        };
-        if self.listen(now) {
+        let is_complete = group.is_some_and(|group| group.missing.is_empty()) && self.listens();
+        let is_over = matches!(self.state, State::Waiting { until } if has_come(until, now));
+        if !(is_over || is_complete) || self.listen(now) {
             return None;
         }
         let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
@@ -194,7 +239,7 @@ impl<P: Protocol> Entry<P> {
             self.state = State::Due { from: now };
             return None;
         }
-        self.rest(until, !is_done);
+        self.rest(!is_done);
         if !is_done && self.wants_leader() {
             return None;
         }
@@ -213,7 +258,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Returns the modules that have sent nothing, after the round was lost.
     pub fn silent(&self, group: Option<&Group>) -> Nodes {
-        let own = || self.node.filter(|_| !self.is_heard).into_iter().collect();
+        let own = || self.node().filter(|_| !self.is_heard).into_iter().collect();
         group.map_or_else(own, Group::silent)
     }
 
@@ -227,7 +272,7 @@ impl<P: Protocol> Entry<P> {
     ) -> Heard<P> {
         let ticket = self.ticket;
         self.unheard = 0;
-        if self.deaf().is_some() {
+        if !self.listens() {
             return Heard::Late { ticket, received };
         }
         let is_starting = is_refusal && received.is_starting();
@@ -251,7 +296,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Takes a frame of a wrong length for the answer if it refuses the request.
     pub fn answered_short(&mut self, frame: &impl embedded_can::Frame, is_group_known: bool) -> Heard<P> {
-        if self.deaf().is_some() || self.request.refuses(frame) != Some(true) || self.is_told_to_wait(frame) {
+        if !self.listens() || self.request.refuses(frame) != Some(true) || self.is_told_to_wait(frame) {
             return Heard::Broken(self.ticket);
         }
         self.unheard = 0;
@@ -270,7 +315,7 @@ impl<P: Protocol> Entry<P> {
     fn count(&mut self, is_group_known: bool) {
         self.has_answer = true;
         if has_one_answer(&self.request) {
-            self.rest(self.until(), false);
+            self.rest(false);
         } else if let (State::Due { from }, false) = (self.state, is_group_known) {
             self.state = State::Waiting { until: from };
         }
@@ -308,35 +353,37 @@ impl<P: Protocol> Entry<P> {
         }
         self.period = None;
         if !self.is_resting() {
-            self.rest(self.until(), true);
+            self.rest(true);
         }
         Some(self)
     }
 
-    /// Begins the next round after a rest, and returns whether there is one. What is due and was deaf begins
-    /// anew when no answer to what was held before can come any more.
+    /// Begins the next round after a rest, and returns whether there is one. What is due forgets what was sent before
+    /// when no answer to that can come any more.
     pub fn goes_on(&mut self, now: u32) -> bool {
         match self.state {
             State::Resting { until, .. } if has_come(until, now) => {
                 let Some(period) = self.period else { return false };
                 if self.leader.is_some() {
-                    self.begin(until);
+                    self.begin(until, now);
                 } else {
                     let rounds = now.wrapping_sub(self.round) / period;
                     self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
-                    self.begin(self.round);
+                    self.begin(self.round, now);
                 }
             }
-            State::Due { from } if self.deaf().is_some_and(|deaf| has_come(deaf, now)) => self.begin(from),
+            State::Due { from } if self.tail_until().is_some_and(|until| has_come(until, now)) => self.begin(from, now),
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => {}
         }
         true
     }
 
-    /// Begins a round, and listens.
-    pub const fn begin(&mut self, from: u32) {
-        if let Some(hold) = &mut self.hold {
-            hold.deaf = None;
+    /// Begins a round, and listens. What can still answer what was sent before is not forgotten.
+    pub fn begin(&mut self, from: u32, now: u32) {
+        let open = self.open_until().filter(|until| !has_come(*until, now));
+        self.set_tail(open.map(Tail::Own));
+        if open.is_none() && self.asked == Asked::Strangers {
+            self.asked = Asked::Several;
         }
         (self.state, self.sent, self.has_answer) = (State::Due { from }, 0, false);
     }
@@ -348,11 +395,9 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
-    /// Ends the round, whose last wait is over at `until`.
-    pub fn rest(&mut self, until: u32, is_lost: bool) {
-        let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
-        let until = until.wrapping_add(late);
-        let until = self.deaf().map_or(until, |deaf| later_of(until, deaf));
+    /// Ends the round, until no answer can come any more.
+    pub fn rest(&mut self, is_lost: bool) {
+        let until = self.open_until().unwrap_or_else(|| self.until());
         (self.state, self.unheard) = (State::Resting { until, is_lost }, 0);
         if let (Some(leader), false) = (&mut self.leader, is_lost) {
             leader.tries = 0;

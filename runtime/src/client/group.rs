@@ -1,5 +1,6 @@
 //! The modules that answer a request to many.
 
+use super::entry::Asked;
 use super::{Client, Entry, Nodes, Ticket};
 use crate::filter::IdFilter;
 use crate::{Addressed, Destination, Error, Protocol, Replies, Request, Route};
@@ -48,8 +49,8 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// else answers it. There is room for `G` targets, and no members mean that they are not known.
     ///
     /// One request to such a target is under way at a time, except one whose answers are late. A round that is
-    /// under way when members are noted ends as it began: without them. Tell the client of members before you
-    /// hold something of one of them, since it then knows what contradicts what.
+    /// under way when members are noted ends as it began: without them, and others can still answer it. Tell the
+    /// client of members before you hold something of one of them, since it then knows what contradicts what.
     ///
     /// # Errors
     ///
@@ -60,6 +61,7 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
         let groups = &mut self.groups.0;
         let known = groups.iter().position(|group| group.is_some_and(|group| group.target == target));
         let place = known.or_else(|| groups.iter().position(Option::is_none));
+        let before = known.and_then(|place| groups.get(place).copied()?).map_or(Nodes::NONE, |group| group.members);
         let group =
             (!members.is_empty()).then_some(Group { target, members, missing: members, unheard: members, asked: None });
         match place.and_then(|place| groups.get_mut(place)) {
@@ -67,6 +69,10 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
             None if group.is_some() => return Err(NoMembers::Full),
             None => {}
         }
+        let entries = self.entries.iter_mut().flatten().filter(|entry| entry.is_under_way() && before != members);
+        let asking =
+            entries.filter(|entry| entry.request.has_many_answers() && target.matches(entry.request.frame().raw_id()));
+        asking.for_each(|entry| entry.asked = Asked::Strangers);
         Ok(())
     }
 }
@@ -101,13 +107,14 @@ impl<const G: usize> Groups<G> {
     /// Returns the modules that a request goes to, if they are known.
     pub fn reach<P: Protocol>(&self, entry: &Entry<P>) -> Option<Nodes> {
         let group = || self.of(&entry.request).map(|group| group.members);
-        entry.node.map(|node| Nodes::from([node])).or_else(group)
+        entry.node().map(|node| Nodes::from([node])).or_else(group)
     }
 
     /// Returns the modules that answer a request, if they are known.
     fn answerers<P: Protocol>(&self, entry: &Entry<P>) -> Option<Nodes> {
         match entry.request.replies() {
-            Replies::One(_) => entry.node.map(|node| Nodes::from([node])),
+            Replies::One(_) => entry.node().map(|node| Nodes::from([node])),
+            Replies::Each(_) if entry.asked == Asked::Strangers => None,
             Replies::Each(_) => self.of(&entry.request).map(|group| group.members),
             Replies::Coordinator(_) | Replies::Nobody => None,
         }
@@ -146,8 +153,11 @@ impl Group {
         }
     }
 
-    /// Notes that a member has answered, as it should or not. Returns whether that is new.
+    /// Notes that a module has answered, as it should or not. Returns whether that is new, and it is a member.
     pub fn answered(&mut self, node: u8, is_good: bool) -> bool {
+        if !self.members.contains(node) {
+            return false;
+        }
         if is_good {
             return self.missing.remove(node);
         }

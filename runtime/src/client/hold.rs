@@ -2,7 +2,7 @@
 
 use core::num::NonZeroU32;
 
-use super::entry::{Entry, State};
+use super::entry::{Asked, Entry, State};
 use super::group::Groups;
 use super::order::Leader;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
@@ -49,8 +49,17 @@ impl core::error::Error for NotHeld {}
 #[derive(Clone, Copy, Debug)]
 pub struct Hold<P: Protocol> {
     pub agrees: Agrees<P>,
-    /// Until when an answer to what it replaced can come, if it can.
-    pub deaf: Option<u32>,
+    /// What can still answer what was sent before this round, if anything can.
+    pub tail: Option<Tail>,
+}
+
+/// Answers that can still come to what was sent before a round, until a time.
+#[derive(Clone, Copy, Debug)]
+pub enum Tail {
+    /// Answers to what it replaced. So no answer counts.
+    Replaced(u32),
+    /// Answers to itself, since it was sent when none counted. It is not sent again yet.
+    Own(u32),
 }
 
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
@@ -75,7 +84,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// The new request does not wait for answers to the old one, and takes its place among those that are
     /// due. As long as an answer to the old one can come that could be taken for one to the new one, every
     /// answer is [`Late`](super::Heard::Late). After that the request is sent once more, and its answer
-    /// counts. A request that is replaced faster than that is never known to be in effect. It is lost,
+    /// counts. Others wait for answers to both. A request that is replaced faster than that is never known to be in effect. It is lost,
     /// however, if nobody answers.
     ///
     /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. What was
@@ -104,7 +113,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         now: u32,
     ) -> Result<Ticket, NotHeld> {
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        let (period, hold) = (NonZeroU32::new(refresh.clamp(1, LONGEST)), Some(Hold { agrees, deaf: None }));
+        let (period, hold) = (NonZeroU32::new(refresh.clamp(1, LONGEST)), Some(Hold { agrees, tail: None }));
         self.hold_entry(Entry { period, hold, ..entry }, now)
     }
 
@@ -189,9 +198,9 @@ impl<P: Protocol> Entry<P> {
             self.leader = Some(leader);
             self.wait_anew();
         }
-        let deaf = self.deaf();
+        let tail = self.hold.and_then(|hold| hold.tail);
         (self.period, self.pace) = (other.period, other.pace);
-        self.hold = other.hold.map(|hold| Hold { deaf, ..hold });
+        self.hold = other.hold.map(|hold| Hold { tail, ..hold });
     }
 
     /// Tests whether both carry the same message by the same access.
@@ -258,25 +267,40 @@ impl<P: Protocol> Entry<P> {
             self.state = State::Due { from };
         }
         self.urgency = self.urgency.max(old.urgency);
-        if old.node == self.node {
+        if old.node() == self.node() {
             (self.begun, self.unheard, self.is_heard) = (old.begun, old.unheard, old.is_heard);
         }
         let open = old.open_until().filter(|until| is_like && !has_come(*until, now));
-        let deaf = latest_of(self.deaf(), open);
-        self.hold = self.hold.map(|hold| Hold { deaf, ..hold });
+        self.set_tail(latest_of(self.deaf(), open).map(Tail::Replaced));
+        if (old.asked, self.asked) == (Asked::Strangers, Asked::Several) && open.is_some() {
+            self.asked = Asked::Strangers;
+        }
         self
     }
 
     /// Returns until when an answer to what it replaced can come, or counts as one to it.
-    pub fn deaf(&self) -> Option<u32> {
-        self.hold.as_ref()?.deaf
+    pub const fn deaf(&self) -> Option<u32> {
+        if let Some(Hold { tail: Some(Tail::Replaced(until)), .. }) = self.hold { Some(until) } else { None }
+    }
+
+    /// Returns until when an answer to what was sent before this round can come.
+    pub fn tail_until(&self) -> Option<u32> {
+        let (Tail::Replaced(until) | Tail::Own(until)) = self.hold.as_ref()?.tail?;
+        Some(until)
+    }
+
+    /// Notes what can still answer what was sent before this round.
+    pub const fn set_tail(&mut self, tail: Option<Tail>) {
+        if let Some(hold) = &mut self.hold {
+            hold.tail = tail;
+        }
     }
 
     /// Begins to listen when no answer to what it replaced can come any more. The request is due again.
     pub fn listen(&mut self, now: u32) -> bool {
         let is_deaf = self.deaf().is_some();
         if is_deaf {
-            self.begin(now);
+            self.begin(now, now);
         }
         is_deaf
     }
@@ -285,17 +309,5 @@ impl<P: Protocol> Entry<P> {
     pub fn unheard_from(&self) -> Option<u32> {
         let is_unheard = self.awaits() && self.deaf().is_some() && self.unheard >= self.pace.tries.max(1);
         is_unheard.then_some(self.begun.wrapping_add(self.pace.wait))
-    }
-
-    /// Returns until when an answer to what was sent can come.
-    fn open_until(&self) -> Option<u32> {
-        let until = match self.state {
-            State::Resting { until, .. } => Some(until),
-            State::Due { .. } | State::Waiting { .. } if self.sent > 0 => {
-                Some(self.until().wrapping_add(self.pace.late))
-            }
-            State::Due { .. } | State::Waiting { .. } => None,
-        };
-        latest_of(until, self.deaf())
     }
 }

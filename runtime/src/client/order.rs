@@ -3,7 +3,7 @@
 use super::entry::{Entry, State};
 use super::hold::Hold;
 use super::{Agrees, Client, NotHeld, Ticket};
-use crate::clock::latest_of;
+use crate::clock::{has_come, latest_of};
 use crate::{Protocol, Request};
 
 /// The request that another one follows.
@@ -33,7 +33,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// the module may have restarted. Then both are sent again, `first` before it, as often as the pace says.
     /// An answer that comes after its wait is late. A module must only take longer to start than the switch-on
     /// waits for the bus. Then it is never switched on without its set-point. What follows another request goes
-    /// before others that are due, but for hurried ones.
+    /// before others that are due, but for hurried ones. It waits anew while a round of what it follows is due, and
+    /// after a program has not called `poll` for a while.
     ///
     /// Another request can follow this one, and so on. When a new round of `first` begins, all that follows it
     /// waits anew, and its answers are late. So renew `first` more slowly than all of them can be answered.
@@ -62,7 +63,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             return Err(NotHeld::First);
         }
         let (period, leader) = (leader.period, Some(Leader::new(first)));
-        self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, deaf: None }), ..entry }, now)
+        self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, tail: None }), ..entry }, now)
     }
 
     /// Lets those requests be sent that follow one which is in effect.
@@ -83,15 +84,36 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
     }
 
+    /// Lets what is due wait anew if what it follows is due, too, or has been in effect for long.
+    ///
+    /// What is due waits for the gap, and for answers to others. So a program has not called `poll` for a while if
+    /// nothing was sent for longer than that.
+    pub(super) fn doubt_leaders(&mut self, now: u32) {
+        let is_idle = self.free.is_none();
+        for place in 0..N {
+            let Some(Some(entry)) = self.entries.get(place) else { continue };
+            let Some(leader) = entry.leader.filter(|_| entry.due(now).is_some()) else { continue };
+            let is_due = self.leaders(leader.ticket).any(|first| self.is_due(first, now));
+            if is_due || is_idle {
+                let leader = Leader { is_awaited: true, is_wanted: !is_due, ..leader };
+                self.entries.get_mut(place).into_iter().flatten().for_each(|entry| entry.leader = Some(leader));
+            }
+        }
+    }
+
+    fn is_due(&self, ticket: Ticket, now: u32) -> bool {
+        self.entries.iter().flatten().any(|entry| entry.ticket == ticket && entry.due(now).is_some())
+    }
+
     /// Renews soon what others follow that are to be sent again.
-    pub(super) fn renew_leaders(&mut self) {
+    pub(super) fn renew_leaders(&mut self, now: u32) {
         for place in 0..N {
             let Some(Some(Entry { leader: Some(leader), .. })) = self.entries.get_mut(place) else { continue };
             if core::mem::take(&mut leader.is_wanted) {
                 let first = leader.ticket;
                 let head = self.leaders(first).last();
                 let mut entries = self.entries.iter_mut().flatten();
-                entries.find(|entry| Some(entry.ticket) == head).into_iter().for_each(Entry::renew_soon);
+                entries.find(|entry| Some(entry.ticket) == head).into_iter().for_each(|entry| entry.renew_soon(now));
             }
         }
     }
@@ -154,14 +176,18 @@ impl<P: Protocol> Entry<P> {
     pub fn wait_anew(&mut self) {
         self.wait_for_leader();
         if self.sent > 0 && !self.is_resting() {
-            self.rest(self.until(), true);
+            self.rest(true);
         }
     }
 
     /// Begins its next round when no answer to this one can come any more.
-    fn renew_soon(&mut self) {
-        if let (State::Resting { until, .. }, Some(period)) = (self.state, self.period) {
-            self.round = until.wrapping_sub(period.get());
+    fn renew_soon(&mut self, now: u32) {
+        match (self.state, self.period) {
+            (State::Resting { until, .. }, Some(period)) => self.round = until.wrapping_sub(period.get()),
+            (State::Due { from }, _) if self.sent == 0 && !has_come(from, now) => {
+                (self.state, self.round) = (State::Due { from: now }, now);
+            }
+            (State::Due { .. } | State::Waiting { .. } | State::Resting { .. }, _) => {}
         }
     }
 

@@ -6,6 +6,8 @@ mod groups;
 mod health;
 mod holds;
 mod order;
+mod random;
+mod stale;
 mod trial;
 
 use super::{Client, Duty, Full, Heard, Pace, Step, Ticket};

@@ -1,8 +1,8 @@
 //! Modules that are kept alive, that fall silent and that come back.
 
 use super::{Asking, PACE, Polled, answer, frame_sent, heat};
-use crate::client::{Heard, Nodes, Step, repeats};
-use crate::tests::heaters::{HEAT, Heat, To, frame};
+use crate::client::{Client, Heard, Nodes, Pace, Step, repeats};
+use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
 
 fn sent(heater: u8) -> Step {
     frame_sent(*heat(heater).frame())
@@ -103,4 +103,20 @@ fn a_module_that_answers_the_first_of_an_order_and_not_the_second_is_not_silent(
         assert_eq!(end == Step::Lost(second), round == 200);
     }
     assert!(matches!(client.step(320), Step::Wait(_)));
+}
+
+#[test]
+fn a_program_is_to_poll_when_what_keeps_a_module_alive_goes_before_others() {
+    let mut client: Client<Message, 4, 1> = Client::new(Pace { gap: 50, wait: 100, tries: 3, late: 200 });
+    client.members(To::Group(2), [4, 5]).expect("room");
+    let [single, group, alive] =
+        [To::Heater(5), To::Group(2), To::Heater(4)].map(|target| Heat::ask(target).expect("a legal request"));
+    client.ask(single, 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*single.frame()));
+    assert!(matches!(client.handle(&frame(0x010C_F005, [0; 4])), Heard::Answer { .. }));
+    // The group waits until 300 ms, when nothing can still answer what heater 5 was asked.
+    client.ask(group, 5).expect("room");
+    client.keep_alive(alive, 5000, 60).expect("room");
+    assert_eq!([client.step(60), client.step(109)], [Step::Wait(Some(110)); 2]);
+    assert_eq!(client.step(110), frame_sent(*alive.frame()));
 }

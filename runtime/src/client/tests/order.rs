@@ -5,7 +5,7 @@
 use std::vec::Vec;
 
 use super::{PACE, Polled, frame_sent};
-use crate::client::{Client, Heard, NotHeld, Step, Ticket, repeats};
+use crate::client::{Client, Heard, NotHeld, Pace, Step, Ticket, repeats};
 use crate::sim::Random;
 use crate::tests::heaters::{COMMAND, Heat, Message, To, frame};
 use crate::{Frame, Request};
@@ -362,4 +362,55 @@ fn what_stops_a_second_counts_although_its_module_has_been_dead_for_25_days() {
         assert_eq!(client.step(now), frame_sent(*power(0.0).frame()));
         assert!(answers(&mut client, &frame(0x0107_F004, [2, 0xF0, 0, 0]), stop));
     }
+}
+
+/// Five minutes, in which a program does not call `poll`.
+const STALL: u32 = 300_000;
+
+#[test]
+fn after_a_stall_a_second_is_not_sent_before_its_first() {
+    // The renewal of the first is overdue, or it is long since it was in effect.
+    for refresh in [REFRESH, 10 * STALL] {
+        let mut client = Asking::new(PACE);
+        let first = client.hold(set(1500.0), refresh, repeats, 0).expect("room");
+        let second = client.hold_after(first, on(3), |_, _| true, 0).expect("room");
+        assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+        assert!(answers(&mut client, &echo(150), first));
+        assert_eq!(sent(&mut client, STALL..STALL + 50), [(STALL, *set(1500.0).frame())]);
+        assert!(answers(&mut client, &echo(150), first));
+        assert_eq!(sent(&mut client, STALL + 50..STALL + 60), [(STALL + 50, *on(3).frame())]);
+        assert!(answers(&mut client, &is_on(3), second));
+        let next = STALL + refresh;
+        assert_eq!(sent(&mut client, STALL + 60..next + 1), [(next, *set(1500.0).frame())]);
+    }
+}
+
+#[test]
+fn after_a_stall_all_that_follows_waits_for_the_first_of_an_order() {
+    let (mut client, [first, second]) = held();
+    let third = client.hold_after(second, on(4), |_, _| true, 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(client.step(20), frame_sent(*on(3).frame()));
+    assert!(answers(&mut client, &is_on(3), second));
+    assert_eq!(sent(&mut client, STALL..STALL + 20), [(STALL, *set(1500.0).frame())]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, STALL + 20..STALL + 40), [(STALL + 20, *on(3).frame())]);
+    assert!(answers(&mut client, &is_on(3), second));
+    assert_eq!(sent(&mut client, STALL + 40..STALL + 60), [(STALL + 40, *on(4).frame())]);
+    assert!(answers(&mut client, &is_on(4), third));
+}
+
+#[test]
+fn a_second_that_waits_for_answers_to_others_is_sent_as_soon_as_none_can_come() {
+    // Something like the second was asked, so it waits until 200 ms: as long as it may.
+    let mut client = Asking::new(Pace { gap: 0, ..PACE });
+    client.ask(on(3), 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*on(3).frame()));
+    assert!(matches!(client.handle(&is_on(3)), Heard::Answer { .. }));
+    let first = client.hold(set(1500.0), REFRESH, repeats, 0).expect("room");
+    client.hold_after(first, on(3), |_, _| true, 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, 1..250), [(200, *on(3).frame())]);
 }
