@@ -141,7 +141,7 @@ impl Resolver<'_> {
             name,
             file,
             derivation,
-            title: Text::new(&self.spec.title),
+            title: Text::new(&self.spec.title.0),
             documents,
             sides,
             bit_rates,

@@ -12,7 +12,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
 use crate::syntax::ast::{
-    ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, Numbers, SignalPath, Spec, States,
+    ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, Numbers, SignalPath, Spec, States, Words,
 };
 
 /// Returns the schema as indented text that ends in a line feed.
@@ -73,6 +73,20 @@ fn bits(description: &str) -> Schema {
     let mut place = json_schema!({ "description": description, "type": "string" });
     values::PLACE.demand(place.ensure_object());
     place
+}
+
+impl JsonSchema for Words {
+    fn schema_name() -> Cow<'static, str> {
+        "Words".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        String::json_schema(generator)
+    }
 }
 
 impl JsonSchema for Numbers {

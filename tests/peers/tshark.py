@@ -13,6 +13,7 @@ import os
 import random
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -20,6 +21,11 @@ from tshark_bench import PEERS, ROOT, SPEC, Bench, Dissector, processor_time, ro
 
 # Protocols that Wireshark has itself.
 TAKEN_NAMES = ("can", "j1939", "frame")
+# Names at which Wireshark ends: words of its filters that are none of Rust's, its groups of preferences, and letters.
+RESERVED_NAMES = """
+    all all_eq all_ne and any any_eq any_ne bitand bitwise_and contains eq ge gt inf le lt matches nan ne not or xor
+    capture console extcap gui nameres packet_list print protocols statistics stream taps a z
+""".split()
 # Random frames of all protocols together, of each protocol at least, and of each feature of the language.
 OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
 # What a frame has to do with others, which `canspec decode` does not say.
@@ -382,6 +388,23 @@ def compare_taken_names(bench):
     return wrong
 
 
+def find_reserved_names(bench):
+    """Loads dissectors of protocols whose names Wireshark does not allow, all at once."""
+    scripts = []
+    for name in RESERVED_NAMES:
+        spec = bench.copy(lambda text: re.sub("^protocol: .*$", f'protocol: "{name}"', text, flags=re.MULTILINE))
+        path = bench.path(f"{name}.lua")
+        os.rename(bench.dissector(spec), path)
+        scripts += ["-X", f"lua_script:{path}"]
+    done = subprocess.run(["tshark", "-G", "protocols", *scripts], capture_output=True, text=True)
+    known = {row.split("\t")[2] for row in done.stdout.splitlines()}
+    missing = [name for name in RESERVED_NAMES if f"canspec_{name}" not in known]
+    print(f"{'tshark.yaml':20} {'reserved names':26} {len(RESERVED_NAMES):6} names, {len(missing):6} fail")
+    if missing:
+        print(f"    {' '.join(missing)}: {done.stderr.strip()}")
+    return len(missing)
+
+
 def find_mistakes(bench):
     """Dissects by wrong copies of a spec; each must be noticed."""
     log = bench.random_log(SPEC, OF_A_FEATURE)
@@ -420,7 +443,7 @@ def main():
             print("SKIPPED: `apt-get install --no-install-recommends lua5.4` installs it.")
         wrong += compare_sessions(bench, protocols + features)
         wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + compare_taken_names(bench)
-        wrong += find_mistakes(bench)
+        wrong += find_reserved_names(bench) + find_mistakes(bench)
     return 1 if wrong else 0
 
 

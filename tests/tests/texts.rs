@@ -270,3 +270,16 @@ fn a_file_name_stands_in_one_line_of_each_output() {
         assert!(!hostile.contains(acts), "{hostile:?}");
     }
 }
+
+#[test]
+fn a_dbc_leaves_out_a_text_that_is_blank_in_ascii() {
+    let text = "canspec: 1\nprotocol: heater\ntitle: A heater\ndocument: {title: \u{52A0}\u{70ED}\u{5668}, version: \"1\"}\n\
+        length: 8\nidentifier: {command: {bits: 10..0}}\naddressing: {bus: {one: {}}}\n\
+        access: {report: {report: {}, answers: {bus: one}}}\n\
+        messages:\n  output:\n    section: \"2.4\"\n    match: {command: 3}\n    access: [report]\n\
+        \x20   fields: {voltage: {bytes: 0, unit: V, title: \u{7535}\u{538B}}}\n\
+        \x20   examples: [{report: 003#0500000000000000, means: {voltage: 5 V}}]\n";
+    let dbc = emit::dbc(&right("heater.yaml", text.to_owned()), None).text;
+    assert!(dbc.contains("\nDocument: 1\n"), "{dbc}");
+    assert!(dbc.contains(" voltage \"section 2.4\";"), "{dbc}");
+}

@@ -84,9 +84,9 @@ impl Resolver<'_> {
     }
 
     /// Tests that names in backquotes in the steps are messages.
-    fn check_steps(&mut self, path: &Path, steps: &[String]) {
+    fn check_steps(&mut self, path: &Path, steps: &[ast::Words]) {
         for (index, step) in steps.iter().enumerate() {
-            for name in step.split('`').skip(1).step_by(2) {
+            for name in step.0.split('`').skip(1).step_by(2) {
                 let known = self.spec.messages.keys().map(String::as_str);
                 self.lookup(&path.index(index), "message", name, known);
             }
@@ -160,7 +160,7 @@ impl Resolver<'_> {
     fn erratum(&mut self, path: &Path, name: &str, erratum: &ast::Erratum) -> Erratum {
         self.lookup(&path.key("kind"), "kind of erratum", &erratum.kind, ERRATUM_KINDS.into_iter());
         let [prints, uses, because] =
-            [&erratum.prints, &erratum.uses, &erratum.because].map(|written| Text::new(written));
+            [&erratum.prints, &erratum.uses, &erratum.because].map(|written| Text::new(&written.0));
         let (name, kind, section) = (Text::new(name), erratum.kind.clone(), text(erratum.section.as_ref()));
         Erratum { name, kind, section, prints, uses, because, path: path.clone() }
     }
@@ -168,12 +168,12 @@ impl Resolver<'_> {
 
 fn document(name: Option<&String>, written: &ast::Document) -> Document {
     let ast::Document { title, version, date, file } = written;
-    let [title, version] = [title, version].map(|written| Text::new(written));
+    let [title, version] = [title, version].map(|written| Text::new(&written.0));
     Document { name: name.cloned(), title, version, date: text(date.as_ref()), file: text(file.as_ref()) }
 }
 
-fn texts(written: &[String]) -> Vec<Text> {
-    written.iter().map(|text| Text::new(text)).collect()
+fn texts(written: &[ast::Words]) -> Vec<Text> {
+    written.iter().map(|words| Text::new(&words.0)).collect()
 }
 
 /// Reads a bit rate in bit/s, up to the limit of CAN.

@@ -11,16 +11,16 @@ use crate::multiples;
 use crate::nearest;
 use crate::number::Rational;
 use crate::resolve::rules;
-use crate::syntax::ast::{Field, Names};
+use crate::syntax::ast::{Field, Names, Words};
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
 /// The keys that say something to readers, not to the codec.
 #[derive(Clone, Copy)]
 pub struct Remarks<'a> {
-    pub title: &'a Option<String>,
-    pub note: &'a Option<String>,
-    pub section: &'a Option<String>,
+    pub title: &'a Option<Words>,
+    pub note: &'a Option<Words>,
+    pub section: &'a Option<Words>,
     pub erratum: &'a Names,
 }
 
@@ -52,8 +52,8 @@ impl Remarks<'_> {
 }
 
 /// Reads a text that may be missing.
-pub fn text(written: Option<&String>) -> Option<Text> {
-    written.map(|text| Text::new(text))
+pub fn text(written: Option<&Words>) -> Option<Text> {
+    written.map(|words| Text::new(&words.0))
 }
 
 impl Resolver<'_> {

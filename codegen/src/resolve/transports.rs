@@ -154,7 +154,7 @@ fn access(side: &str, pattern: ast::Pattern, answers: Map<String>, transport: &a
         report: Some(pattern),
         from: Some(side.to_owned()),
         answers,
-        title: Some(format!("Frames of the transport, sent by the {side}")),
+        title: Some(ast::Words(format!("Frames of the transport, sent by the {side}"))),
         section: transport.section.clone(),
         ..ast::Access::default()
     }

@@ -33,7 +33,7 @@ pub struct Spec {
     /// Name of the protocol, of its Rust module and of `--protocol`, in lower-case letters, digits and `_`: `charger`.
     pub protocol: String,
     /// What the devices are, in a few words without a full stop: `Charging modules`.
-    pub title: String,
+    pub title: Words,
     /// Name of another spec that this one takes over and changes: `charger`. It is a file
     /// `charger.yaml` beside this one, or else a built-in protocol. Nothing is taken over if absent.
     pub based_on: Option<String>,
@@ -158,13 +158,13 @@ pub struct Sides {
 #[serde(deny_unknown_fields)]
 pub struct Document {
     /// Title as printed: `Charging module CAN protocol`.
-    pub title: String,
+    pub title: Words,
     /// Version as printed: `V1.0`.
-    pub version: String,
+    pub version: Words,
     /// Date of that version: `2020-10-18`; not stated if absent.
-    pub date: Option<String>,
+    pub date: Option<Words>,
     /// Name of the file that was read: `charger.pdf`; not stated if absent.
-    pub file: Option<String>,
+    pub file: Option<Words>,
 }
 
 /// One entry of `identifier`: a named field, or the place of unnamed `ones` or `zeros`.
@@ -194,23 +194,23 @@ pub struct StatusBit {
     /// defect); not stated if absent.
     pub severity: Option<String>,
     /// Condition that sets the bit, as a text: `no command for 10 s`; not stated if absent.
-    pub set_when: Option<String>,
+    pub set_when: Option<Words>,
     /// Condition that clears the bit, as a text: `a command arrives`; not stated if absent.
-    pub clear_when: Option<String>,
+    pub clear_when: Option<Words>,
     /// What the device does while the bit is set, as a text: `module switches off`; not stated if absent.
-    pub effect: Option<String>,
+    pub effect: Option<Words>,
     /// What the device's LED shows while the bit is set, as a text: `red`; not stated if absent.
-    pub led: Option<String>,
+    pub led: Option<Words>,
     /// List of the only device models that have the bit: `[SM_750]`; if absent, every model that has
     /// the word.
     #[serde(default)]
     pub models: Vec<String>,
     /// What it is, in a few words without a full stop: `Fan fault`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `valid on three-phase modules only`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -222,7 +222,7 @@ pub struct NamedValue {
     /// The name.
     pub name: String,
     /// What the value is, in a few words.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// The only device models that have the value; empty if every model has it.
     pub models: Vec<String>,
 }
@@ -235,7 +235,7 @@ pub struct DescribedValue {
     /// Name of the raw value: `boost`.
     pub name: String,
     /// What the value is, in a few words without a full stop: `Charges faster`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// List of the only device models that have the value: `[SM_750]`; every model has it if absent.
     #[serde(default)]
     pub models: Vec<String>,
@@ -252,7 +252,7 @@ pub struct ValueExample {
     /// name or a text.
     pub means: String,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -264,10 +264,10 @@ pub struct ValueExample {
 #[serde(deny_unknown_fields)]
 pub struct DeviceModel {
     /// What it is, in a few words without a full stop: `Module for up to 750 V`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// Item numbers of the model, a list of texts: `[SM-750-30]`; none if absent.
     #[serde(default)]
-    pub items: Vec<String>,
+    pub items: Vec<Words>,
     /// Largest number of devices that can work together, 1 to 65535: `60`; not stated if absent.
     pub max_parallel: Option<String>,
     /// Speeds of this model in whole kbit/s, a list: `[125 kbit/s]`; not stated if absent.
@@ -282,9 +282,9 @@ pub struct DeviceModel {
     #[serde(default)]
     pub types: Map<Field>,
     /// What else a reader must know, in one sentence: `answers to broadcasts from software 1.20 on`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -312,11 +312,11 @@ pub struct Timing {
     #[serde(default)]
     pub messages: Vec<String>,
     /// What it is, in a few words without a full stop: `Silence until the module switches off`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `any command counts`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -329,13 +329,13 @@ pub struct Timing {
 pub struct Procedure {
     /// Steps in order, each a sentence: ``[Wait 10 s, Read `output`]``. A name in backquotes must
     /// be a message.
-    pub steps: Vec<String>,
+    pub steps: Vec<Words>,
     /// What it is, in a few words without a full stop: `Switching on`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `repeat it when a module has been replaced`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -352,13 +352,13 @@ pub struct Erratum {
     /// printed.
     pub kind: String,
     /// What the document prints: `13 38`.
-    pub prints: String,
+    pub prints: Words,
     /// What the spec uses: `13 88`.
-    pub uses: String,
+    pub uses: Words,
     /// Why the spec departs from the document: `the text beside it says 500 V`.
-    pub because: String,
+    pub because: Words,
     /// Section that prints it, in quotes: `"2.4"`; not stated if absent.
-    pub section: Option<String>,
+    pub section: Option<Words>,
 }
 
 /// Warnings of one rule that are accepted.
@@ -371,7 +371,7 @@ pub struct Allowance {
     /// Item in which the warnings are, by the keys that lead to it: `messages.output`.
     pub at: String,
     /// Why they are accepted: `only seen on the bus`.
-    pub because: String,
+    pub because: Words,
 }
 
 /// A number, or one for each device model.
@@ -386,6 +386,10 @@ pub enum ByModel {
 /// One number, or a list of numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Numbers(pub Vec<String>);
+
+/// A text for people, which is not blank.
+#[derive(Clone, Debug)]
+pub struct Words(pub String);
 
 /// One name, or a list of names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

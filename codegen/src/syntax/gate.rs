@@ -229,7 +229,7 @@ impl<'a> Gate<'a> {
             Some(key) if let Some(comment) = self.comment_after(key).filter(|_| !is_key) => {
                 format!("`#` begins a comment here; if it belongs to the text, quote it: `{}: \"{comment}\"`", key.name)
             }
-            _ => "write it, write `\"\"` for an empty text, or remove the line".to_owned(),
+            _ => "write it, or remove the line".to_owned(),
         };
         Diagnostic::error(&rules::WRONG_KIND, span, message).help(help)
     }

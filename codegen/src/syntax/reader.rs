@@ -17,6 +17,9 @@ use crate::diagnostic::{At, Diagnostic};
 /// A spec is read this number of times at most.
 const ROUNDS: usize = 200;
 
+/// A text that may stand wherever one may.
+const PLACEHOLDER: &str = "mended";
+
 /// Most errors that are reported of one spec.
 const REPORTED: usize = 100;
 
@@ -121,7 +124,7 @@ impl<'a> Reader<'a> {
 
     fn replace(&mut self, path: &Path, kind: Kind) {
         let empty = match kind {
-            Kind::Text => Value::String(String::new()),
+            Kind::Text => Value::String(PLACEHOLDER.to_owned()),
             Kind::List => Value::Sequence(Vec::new()),
             Kind::Map => Value::Mapping(Mapping::new()),
         };
@@ -141,7 +144,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Copies a tree in which every leaf is text; what the gate refused becomes an empty text that counts as mended.
+/// Copies a tree in which every leaf is text; what the gate refused becomes a text that counts as mended.
 fn to_value(node: &Node, path: &Path, mended: &mut HashSet<Path>) -> Value {
     match &node.content {
         Content::Text(text) => Value::String(text.clone()),
@@ -157,7 +160,7 @@ fn to_value(node: &Node, path: &Path, mended: &mut HashSet<Path>) -> Value {
         }
         Content::Refused => {
             mended.insert(path.clone());
-            Value::String(String::new())
+            Value::String(PLACEHOLDER.to_owned())
         }
     }
 }

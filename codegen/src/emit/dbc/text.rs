@@ -17,8 +17,12 @@ pub fn unit(unit: Unit) -> String {
 /// Returns what the spec says beside an item.
 pub fn remarks(doc: &Doc) -> String {
     let section = doc.section.as_ref().map(|section| format!("section {}", section.in_dbc()));
-    let parts = [&doc.title, &doc.note].into_iter().flatten().map(Text::in_dbc);
-    parts.chain(section).collect::<Vec<_>>().join("; ")
+    shown([&doc.title, &doc.note].into_iter().flatten()).chain(section).collect::<Vec<_>>().join("; ")
+}
+
+/// Writes the texts that are not blank in ASCII.
+fn shown<'a>(texts: impl Iterator<Item = &'a Text>) -> impl Iterator<Item = String> {
+    texts.map(Text::in_dbc).filter(|text| !text.is_empty())
 }
 
 /// Returns the comment of the whole file.
@@ -40,7 +44,7 @@ pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
 /// Says which document it is.
 fn document(document: &Document) -> String {
     let Document { name, title, version, date, file } = document;
-    let printed = [Some(title), Some(version), date.as_ref(), file.as_ref()].into_iter().flatten().map(Text::in_dbc);
+    let printed = shown([Some(title), Some(version), date.as_ref(), file.as_ref()].into_iter().flatten());
     let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
     format!("Document{name}: {}", printed.collect::<Vec<_>>().join(", "))
 }

@@ -1,10 +1,27 @@
 -- The dissector: its fields, the tree of a frame, and how Wireshark finds it.
 
+-- Names that no protocol can have: words of display filters, and groups of preferences. Wireshark ends at them.
+local reserved = {}
+for word in ([[
+  all all_eq all_ne and any any_eq any_ne bitand bitwise_and contains eq false ge gt in inf le lt matches nan ne not or
+  true xor
+  capture console extcap gui nameres packet_list print protocols statistics stream taps
+]]):gmatch("%S+") do
+  reserved[word] = true
+end
+
+-- Tests whether a protocol can have a name. One letter is too short for Wireshark.
+local function is_allowed(name)
+  return #name > 1 and not reserved[name]
+end
+
 -- Returns the protocol for Wireshark, and its name in filters. Wireshark's own names are taken.
 local function new_proto()
   local about = string.upper(protocol.name) .. ": " .. protocol.title
-  local is_free, proto = pcall(Proto, protocol.name, about)
-  if is_free then return proto, protocol.name end
+  if is_allowed(protocol.name) then
+    local is_free, proto = pcall(Proto, protocol.name, about)
+    if is_free then return proto, protocol.name end
+  end
   local name = "canspec_" .. protocol.name
   return Proto(name, about), name
 end

@@ -6,7 +6,7 @@
 use indexmap::IndexMap;
 use serde::Deserialize;
 
-use super::{Map, NamedValue, Names, Pattern, StatusBit, ValueExample};
+use super::{Map, NamedValue, Names, Pattern, StatusBit, ValueExample, Words};
 
 /// What stands after a key. It can be missing.
 trait Entry: Clone {
@@ -16,16 +16,8 @@ trait Entry: Clone {
     fn is_written(&self) -> bool;
 }
 
-impl Entry for Option<String> {
-    const CAN_BE_EMPTY: bool = false;
-
-    fn is_written(&self) -> bool {
-        self.is_some()
-    }
-}
-
 /// An empty map says that something is there without a name.
-impl<V: Clone> Entry for Option<IndexMap<String, V>> {
+impl<V: Clone> Entry for Option<V> {
     const CAN_BE_EMPTY: bool = false;
 
     fn is_written(&self) -> bool {
@@ -220,11 +212,11 @@ keys! {
     Examples "examples": examples: Vec<ValueExample>, own;
     /// What it is, in a few words without a full stop: `Output voltage`; that of its type if
     /// absent.
-    Title "title": title: Option<String>, inherited;
+    Title "title": title: Option<Words>, inherited;
     /// What else a reader must know, in one sentence: `0 until a group has been set`.
-    Note "note": note: Option<String>, own;
+    Note "note": note: Option<Words>, own;
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    Section "section": section: Option<String>, own;
+    Section "section": section: Option<Words>, own;
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     Erratum "erratum": erratum: Names, own;
 }

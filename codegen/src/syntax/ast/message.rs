@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{ByModel, Field, Map, Names, Pattern, Reserved};
+use super::{ByModel, Field, Map, Names, Pattern, Reserved, Words};
 
 /// A message: what chooses it, how it travels, and what it carries.
 #[derive(Clone, Debug, Deserialize)]
@@ -66,11 +66,11 @@ pub struct Message {
     #[serde(default)]
     pub examples: Vec<Example>,
     /// What it is, in a few words without a full stop: `Output voltage and current of one module`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `a module that is switched off answers with zeros`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -144,9 +144,9 @@ pub struct Example {
     /// absent, the document prints it.
     pub origin: Option<String>,
     /// What else a reader must know, in one sentence: `the data bytes are not legible`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -175,11 +175,11 @@ pub struct Sequence {
     /// `[{request: 000302F0#0000000000000000, message: output}]`.
     pub frames: Vec<Example>,
     /// What it is, in a few words without a full stop: `Two modules are read`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `the last reply is not legible`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,

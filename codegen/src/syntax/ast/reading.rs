@@ -4,12 +4,22 @@
 use std::fmt;
 
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::{
-    ByModel, DescribedValue, Field, IdentifierEntry, Map, Means, NamedValue, Names, Numbers, SignalPath, States,
+    ByModel, DescribedValue, Field, IdentifierEntry, Map, Means, NamedValue, Names, Numbers, SignalPath, States, Words,
 };
+
+impl<'de> Deserialize<'de> for Words {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        if text.trim().is_empty() {
+            return Err(D::Error::invalid_value(Unexpected::Str(&text), &"a text that is not blank"));
+        }
+        Ok(Self(text))
+    }
+}
 
 /// Reads one text or a list of texts.
 struct OneOrMany(&'static str);

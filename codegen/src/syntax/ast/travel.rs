@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Constants, Map, Names, Pattern};
+use super::{Constants, Map, Names, Pattern, Words};
 
 /// An addressing mode: the request's addresses, and the reply's by who answers.
 #[derive(Clone, Debug, Deserialize)]
@@ -22,11 +22,11 @@ pub struct Mode {
     /// none if absent.
     pub coordinator: Option<Pattern>,
     /// What it is, in a few words without a full stop: `All modules of one group`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `the group must have been set before`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -66,11 +66,11 @@ pub struct Access {
     /// Entry of `timing` that says how often a report comes: `cycle`; not stated if absent.
     pub every: Option<String>,
     /// What it is, in a few words without a full stop: `Read from modules`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `the reply carries the values now in effect`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -99,11 +99,11 @@ pub struct Transport {
     #[serde(default)]
     pub send: Pattern,
     /// What it is, in a few words without a full stop: `Transport of long messages`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `only the vehicle uses it`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; its frames inherit it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
@@ -119,11 +119,11 @@ pub struct Foreign {
     #[serde(rename = "match")]
     pub pattern: Pattern,
     /// What it is, in a few words without a full stop: `Traffic between modules`.
-    pub title: Option<String>,
+    pub title: Option<Words>,
     /// What else a reader must know, in one sentence: `a controller may ignore it`.
-    pub note: Option<String>,
+    pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
+    pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,

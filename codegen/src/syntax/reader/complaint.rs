@@ -159,6 +159,7 @@ fn without_dash(items: &[Node]) -> String {
 /// Says how to write the kind that is expected.
 fn how_to_write(found: &Node, expected: Kind) -> Option<String> {
     match (&found.content, expected) {
+        (Content::Text(_), Kind::Text) => Some("write it, or remove the line".to_owned()),
         (Content::Text(text), Kind::List) if !text.is_empty() => {
             Some(format!("write `[{}]`", text.trim_matches(['[', ']'])))
         }
