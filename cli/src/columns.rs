@@ -175,18 +175,22 @@ pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) 
     for row in rows {
         let mut lines = columns.row(&mut text, &row.cells());
         row.last.iter().for_each(|item| lines.add(item, row.separator));
+        row.below.iter().for_each(|sentence| lines.add_sentence(sentence));
         lines.end();
     }
     out.write_all(&text)
 }
 
 /// A row of a table that is known as a whole.
+#[derive(Default)]
 pub struct Row {
     pub cells: Vec<String>,
     /// What the last column shows.
     pub last: Vec<String>,
     /// What stands between the items of the last column.
     pub separator: &'static str,
+    /// Sentences of the last column, each on a line of its own.
+    pub below: Vec<String>,
 }
 
 impl Row {
@@ -207,7 +211,7 @@ mod tests {
 
     fn row(cells: [&str; 2], last: &[&str]) -> Row {
         let owned = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect();
-        Row { cells: owned(&cells), last: owned(last), separator: " " }
+        Row { cells: owned(&cells), last: owned(last), separator: " ", ..Row::default() }
     }
 
     #[test]

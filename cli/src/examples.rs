@@ -62,7 +62,7 @@ fn row(protocol: &Protocol, example: &Example) -> Row {
         erratum.unwrap_or_default(),
     ];
     let words = note.map_or("", Text::for_people).split(' ');
-    Row { cells, last: words.map(str::to_owned).collect(), separator: " " }
+    Row { cells, last: words.map(str::to_owned).collect(), separator: " ", ..Row::default() }
 }
 
 #[derive(Serialize)]

@@ -144,7 +144,7 @@ impl Candidate {
         let share = format!("{:.1} %", self.share * 100.0);
         let counts = [self.contradicted, self.alone].map(|count| count.to_string());
         let cells = [&[self.name.clone(), self.recognised.to_string(), share][..], &counts].concat();
-        Row { cells, last: vec![self.protocol.title.for_people().to_owned()], separator: "" }
+        Row { cells, last: vec![self.protocol.title.for_people().to_owned()], separator: "", ..Row::default() }
     }
 }
 

@@ -108,9 +108,6 @@ pub trait Room {
 
     /// Returns what is odd about bits and their value, apart from the range.
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)>;
-
-    /// Describes in a few words how bits become values.
-    fn description(&self) -> Vec<String>;
 }
 
 /// The tables that encodings refer to.
@@ -136,7 +133,7 @@ impl Words<'_> {
             }
             Encoding::ByModel { signals: own, .. } => ask(&by_model::ByModel { signal, own, models: self.models }),
             Encoding::Float => ask(&float::Float { signal }),
-            Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id], models: self.models }),
+            Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.statuses[*id] }),
             Encoding::Text(form) => ask(&Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
@@ -155,11 +152,6 @@ pub fn said(words: Words, signal: &Signal, text: &str) -> Result<Said, Misfit> {
         Some(number) => quantity::rounded(signal, number).map(Said::Rounded),
         None => words.with(signal, |room| room.parse(text, true)).map(Said::Bits),
     }
-}
-
-/// Describes in a few words how the bits of a signal become values.
-pub fn description(protocol: &Protocol, signal: &Signal) -> Vec<String> {
-    Words::from(protocol).with(signal, |room| room.description())
 }
 
 /// Returns the value of a text's bytes.

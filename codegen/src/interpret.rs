@@ -24,7 +24,7 @@ pub use value::{Limits, physical, raw_of};
 use std::fmt;
 
 use crate::encoding::value_of_bytes;
-pub use crate::encoding::{Input, Value, description, escape};
+pub use crate::encoding::{Input, Value, escape};
 use crate::hex;
 use crate::model::{
     AccessId, AddressTypeId, FieldId, FrameId, IdentifierField, Kind, LongMessageId, Message, MessageId, ModelId,

@@ -47,6 +47,7 @@ pub(crate) use message::submasks;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;
+pub use place::WrittenPlace;
 pub use quantity::{Fixed, QuantityPaths, SignalPath};
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};

@@ -200,7 +200,7 @@ impl Summary {
     /// Where `out` cannot be written.
     pub fn write_text(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{}", self.headline())?;
-        let row = |cells: Vec<String>, last: String| Row { cells, last: vec![last], separator: "" };
+        let row = |cells: Vec<String>, last: String| Row { cells, last: vec![last], separator: "", ..Row::default() };
         let messages = self.messages().into_iter().map(|([protocol, message, access, kind], frames)| {
             let names = [protocol, message, access, kind].map(String::clone);
             row([&names[..], &[frames.to_string()]].concat(), rounded(self.rate(frames)))
@@ -212,7 +212,7 @@ impl Summary {
         table(out, &["NOTE", "FRAMES"], "FIRST LINE", &notes.collect::<Vec<_>>())?;
         let unrecognised = self.unrecognised().into_iter().map(|(id, problem, seen, reasons)| {
             let cells = vec![id.to_owned(), problem.to_owned(), seen.frames.to_string(), seen.line.to_string()];
-            Row { cells, last: reasons.words(), separator: " " }
+            Row { cells, last: reasons.words(), separator: " ", ..Row::default() }
         });
         let headings = ["UNRECOGNISED", "PROBLEM", "FRAMES", "FIRST LINE"];
         table(out, &headings, "REASONS", &unrecognised.collect::<Vec<_>>())

@@ -20,7 +20,7 @@ fn row(protocol: &Protocol, QuantityPaths { name, read, set, .. }: &QuantityPath
     let known = read.as_ref().or(set.as_ref());
     let unit = known.and_then(|path| protocol.unit_at(path)).map_or_else(String::new, |unit| unit.symbol.to_string());
     let [read, set] = [read, set].map(|path| path.as_ref().map_or_else(String::new, |path| text(protocol, path)));
-    Row { cells: vec![name.clone(), unit, read], last: vec![set], separator: " " }
+    Row { cells: vec![name.clone(), unit, read], last: vec![set], separator: " ", ..Row::default() }
 }
 
 /// Writes a path, and what a switch is while it is on and off.

@@ -5,22 +5,25 @@ use std::io::{self, Write};
 use canspec_codegen::model::{Procedure, Protocol, Quantity, Timing};
 use canspec_codegen::text::Text;
 
-use super::{split, title, words};
-use crate::columns::{self, Row};
+use super::remarks::{errata, sentences, title, words};
+use super::rows;
+use crate::columns::Row;
 
 /// Writes a table of the times and one of the procedures, if there are any.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    let times: Vec<_> = protocol.timing.iter().map(|time| timing(protocol, time)).collect();
-    table(out, &["TIMING", "TIME", "MINIMUM", "ROLE", "SECTION"], &times)?;
-    table(out, &["PROCEDURE", "SECTION"], &protocol.procedures.iter().flat_map(procedure).collect::<Vec<_>>())
+    times(out, protocol, protocol.timing.iter())?;
+    let procedures: Vec<_> = protocol.procedures.iter().flat_map(procedure).collect();
+    rows::table(out, &["PROCEDURE", "SECTION"], &procedures)
 }
 
-fn table(out: &mut impl Write, headings: &[&str], rows: &[Row]) -> io::Result<()> {
-    if rows.is_empty() {
-        return Ok(());
-    }
-    writeln!(out)?;
-    columns::write(out, headings, "MEANING", rows)
+/// Writes a table of times.
+pub fn times<'a>(
+    out: &mut impl Write,
+    protocol: &Protocol,
+    times: impl IntoIterator<Item = &'a Timing>,
+) -> io::Result<()> {
+    let rows: Vec<_> = times.into_iter().map(|time| timing(protocol, time)).collect();
+    rows::table(out, &["TIMING", "TIME", "MINIMUM", "ROLE", "SECTION"], &rows)
 }
 
 fn timing(protocol: &Protocol, timing: &Timing) -> Row {
@@ -36,7 +39,8 @@ fn timing(protocol: &Protocol, timing: &Timing) -> Row {
     let time = format!("{time} {}", unit.symbol);
     let cells = vec![name.clone(), time, minimum, role(protocol, timing), words(doc.section.as_ref())];
     let meaning: Vec<_> = [title(doc), doc.note.as_ref().map(Text::for_people)].into_iter().flatten().collect();
-    Row { cells, last: split(&meaning.join("; ")), separator: " " }
+    let last = [meaning.join("; ")].into_iter().chain(errata(doc)).collect::<Vec<_>>().join(" ");
+    Row { cells, last: split(&last), separator: " ", ..Row::default() }
 }
 
 /// Says what a time is for, and what it is about.
@@ -51,11 +55,17 @@ fn role(protocol: &Protocol, timing: &Timing) -> String {
 /// Returns a row for a procedure, and one for each of its steps.
 fn procedure(procedure: &Procedure) -> impl Iterator<Item = Row> {
     let head = vec![procedure.name.clone(), words(procedure.doc.section.as_ref())];
-    let head = Row { cells: head, last: split(title(&procedure.doc).unwrap_or_default()), separator: " " };
+    let last = split(title(&procedure.doc).unwrap_or_default());
+    let head = Row { cells: head, last, separator: " ", below: sentences(&procedure.doc) };
     let steps = procedure.steps.iter().zip(1..).map(|(step, number): (_, usize)| Row {
         cells: vec![format!("  {number}"), String::new()],
         last: split(step.for_people()),
         separator: " ",
+        ..Row::default()
     });
     std::iter::once(head).chain(steps)
+}
+
+fn split(text: &str) -> Vec<String> {
+    text.split(' ').map(str::to_owned).collect()
 }

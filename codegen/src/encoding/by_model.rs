@@ -48,21 +48,6 @@ impl Room for ByModel<'_> {
         let text = || format!("the scale of {name} (raw {raw}) is known of {}", self.names(" and "));
         (*value == Value::None).then(|| (NoteRule::ModelDependent, text()))
     }
-
-    fn description(&self) -> Vec<String> {
-        let of_model = |own: &OfModel<Signal>| {
-            let Signal { encoding, range, .. } = &own.value;
-            let unit = own.value.unit_text();
-            let linear = encoding.linear();
-            let step = linear.map(|linear| format!("step {}{unit}", linear.scale));
-            let offset = linear.filter(|linear| linear.offset != Rational::ZERO);
-            let offset = offset.map(|linear| format!("raw 0 is {}{unit}", linear.offset));
-            let range = range.map(|range| format!("{}..{}{unit}", range.minimum, range.maximum));
-            let facts: Vec<_> = step.into_iter().chain(offset).chain(range).collect();
-            format!("{} on {}", facts.join(" and "), self.models[own.model].name)
-        };
-        self.own.iter().map(of_model).collect()
-    }
 }
 
 impl ByModel<'_> {

@@ -45,10 +45,6 @@ impl Room for Float<'_> {
         let text = || format!("{} is {}", self.signal.name, float(bits));
         (*value == Value::None).then(|| (NoteRule::NotFinite, text()))
     }
-
-    fn description(&self) -> Vec<String> {
-        vec!["float".to_owned()]
-    }
 }
 
 impl Float<'_> {

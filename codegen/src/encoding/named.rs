@@ -1,13 +1,12 @@
 //! Values that have names and are no quantities.
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
-use crate::model::{DeviceModel, Enumeration, Misfit, ModelId, NamedValue, NoteRule, Signal, Table};
+use crate::model::{Enumeration, Misfit, NamedValue, NoteRule, Signal};
 use crate::number::Rational;
 
 pub struct Named<'a> {
     pub signal: &'a Signal,
     pub known: &'a Enumeration,
-    pub models: &'a Table<ModelId, DeviceModel>,
 }
 
 impl Room for Named<'_> {
@@ -34,16 +33,6 @@ impl Room for Named<'_> {
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {
         let text = || format!("{} {bits:#X} has no name", self.signal.name);
         (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
-    }
-
-    fn description(&self) -> Vec<String> {
-        let digits = usize::from(self.known.width.div_ceil(4));
-        let is_small = self.known.values.iter().all(|value| value.raw < 10);
-        let shown = |value: &NamedValue| {
-            let (raw, text) = (value.raw, value.text(self.models));
-            if is_small { format!("{raw} = {text}") } else { format!("0x{raw:0digits$X} = {text}") }
-        };
-        self.known.values.iter().map(shown).collect()
     }
 }
 

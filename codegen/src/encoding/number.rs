@@ -60,10 +60,6 @@ impl Room for Number<'_> {
         let text = || format!("{} {bits:#X} is no number", self.signal.name);
         (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
     }
-
-    fn description(&self) -> Vec<String> {
-        (self.scale != Rational::ONE).then(|| format!("step {}", self.scale)).into_iter().collect()
-    }
 }
 
 impl Number<'_> {

@@ -39,16 +39,6 @@ impl Room for Packed<'_> {
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
         formless(self.signal, value)
     }
-
-    /// Returns the form as the spec writes it.
-    fn description(&self) -> Vec<String> {
-        let piece = |piece: &Piece| match piece {
-            Piece::Literal(text) => text.clone(),
-            Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", self.parts[*part].name),
-            Piece::Part { part, digits: None } => format!("{{{}}}", self.parts[*part].name),
-        };
-        vec![self.pieces.iter().map(piece).collect()]
-    }
 }
 
 impl Packed<'_> {

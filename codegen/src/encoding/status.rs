@@ -54,10 +54,6 @@ impl Room for Status<'_> {
         let text = || format!("{} has bits {unknown:#X} set that have no name", self.signal.name);
         Some((NoteRule::UnknownBit, text()))
     }
-
-    fn description(&self) -> Vec<String> {
-        self.word.bits.iter().map(|bit| format!("bit {} {}", bit.bit, bit.name)).collect()
-    }
 }
 
 impl Status<'_> {

@@ -33,15 +33,6 @@ impl Room for Text<'_> {
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
         formless(self.signal, value)
     }
-
-    fn description(&self) -> Vec<String> {
-        let length = self.count();
-        match self.form {
-            TextForm::Ascii { fill: 0 } => vec![format!("text of {length} characters")],
-            TextForm::Ascii { fill } => vec![format!("text of {length} characters, filled with {fill:#04X}")],
-            TextForm::Hexadecimal => vec![format!("{length} bytes in hexadecimal")],
-        }
-    }
 }
 
 /// Says that bits are no text, if they are none.

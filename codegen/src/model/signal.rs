@@ -113,6 +113,8 @@ pub struct StatusBit {
     pub doc: Doc,
     /// Number of the bit, 0 = least significant.
     pub bit: u8,
+    /// Whether the spec counts it in its byte of the frame, and not in the word.
+    pub is_by_byte: bool,
     /// Severity of the set bit, if the document says it.
     pub severity: Option<Severity>,
     /// Condition that sets the bit.
@@ -153,6 +155,10 @@ pub struct Signal {
     /// Bits of the data bytes. Of a run it is the first byte.
     #[serde(with = "place")]
     pub place: Place,
+    /// The whole bytes whose bits the spec counts: those of the word around it, or else its own. They have the window
+    /// and the byte order of `place`.
+    #[serde(with = "place")]
+    pub word: Place,
     /// How many bytes it takes from its window on, if it is a text that no place can hold.
     pub run: Option<ByteRun>,
     /// What these bits mean.

@@ -73,6 +73,15 @@ impl Row {
         Some((window, payload.bits(low + place.width() - 1, low)))
     }
 
+    /// Returns the word in which the spec counts the bits of an element. Elements in one word share it; else each has
+    /// its own. `word` is that of the first one.
+    fn word(self, word: Windowed, element: Windowed, index: u16) -> Place {
+        let bits = |place: Place| u64::from_be_bytes(place.mask());
+        let is_shared = word.0 == element.0 && bits(element.1) & !bits(word.1) == 0;
+        let own = self.place(word, index).filter(|_| !is_shared);
+        own.map_or(word.1, |(_, word)| word)
+    }
+
     /// Tests whether an element lies inside the word that counts its bits.
     fn is_inside(self, place: Windowed, index: u16, word: Option<Windowed>) -> bool {
         let bits = |(_, place): Windowed| u64::from_be_bytes(place.mask());
@@ -187,11 +196,11 @@ impl Resolver<'_> {
             leaves.signals.push(signal);
             return Some(());
         }
-        let Signal { name, doc, window, place, .. } = &signal;
+        let Signal { name, doc, window, place, word, .. } = &signal;
         let least = row.least.map(usize::from);
         let array = leaves.arrays.push(Array { name: name.clone(), doc: doc.clone(), elements: Vec::new(), least });
         for index in 0..row.count {
-            let Some((window, place)) = row.place((*window, *place), index) else {
+            let Some((moved, place)) = row.place((*window, *place), index) else {
                 let text = format!("the frame has no room for element {} of `{name}`", index + 1);
                 let help = "correct the count, the places or the `step`";
                 self.error_with_help(&rules::ARRAY, doc.path.at_key(), text, help);
@@ -201,7 +210,8 @@ impl Resolver<'_> {
             leaves.signals.push(signal.clone().changed(|element| {
                 element.name = format!("{name}_{number}");
                 element.doc = numbered(doc, number);
-                (element.window, element.place) = (window, place);
+                (element.window, element.place) = (moved, place);
+                element.word = row.word((*window, *word), (moved, place), index);
                 element.element = Some(Element { array, index: u8::try_from(index).unwrap_or(u8::MAX) });
             }));
         }

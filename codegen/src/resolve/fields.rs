@@ -258,7 +258,11 @@ impl Resolver<'_> {
         // Each use of a group has the same types of named values.
         let owner = if outer.group.name.is_empty() { outer.owner } else { outer.group.name };
         let signal = self.signal(outer.own_name(name), merged, place, doc, owner)?;
-        let signal = signal.changed(|signal| (signal.name, signal.window) = (name.to_owned(), window));
+        let around = outer.word.filter(|_| merged.field.bits.is_some());
+        let word = around.map_or(place, |(_, word)| word);
+        let signal = signal.changed(|signal| {
+            (signal.name, signal.window, signal.word) = (name.to_owned(), window, word);
+        });
         let is_sound = self.is_sound(merged);
         let constant = &merged.field.constant;
         let role = if constant.is_some() { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) };
@@ -345,6 +349,7 @@ impl Resolver<'_> {
             types: merged.types.clone(),
             window: 0,
             place,
+            word: place,
             run: None,
             encoding: Encoding::Packed { pieces, parts },
             unit: None,

@@ -319,13 +319,17 @@ fn in_one_frame(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Ar
 /// Returns a signal of the first eight bytes with its place in a frame.
 fn in_frame(signal: &Signal) -> Option<Signal> {
     let moved = 8 * u8::try_from(signal.window).ok()?;
-    let (low, width) = (signal.place.bits_of_payload().shift(), signal.place.width());
-    let (payload, low) = match signal.place.order() {
-        ByteOrder::Big => (Place::bytes(0, 7), low - moved),
-        ByteOrder::Little => (Place::bytes(7, 0), low + moved),
+    let in_frame = |place: Place| {
+        let (low, width) = (place.bits_of_payload().shift(), place.width());
+        let (payload, low) = match place.order() {
+            ByteOrder::Big => (Place::bytes(0, 7), low.checked_sub(moved)?),
+            ByteOrder::Little => (Place::bytes(7, 0), low + moved),
+        };
+        (low + width <= 64).then(|| payload.bits(low + width - 1, low))
     };
-    let place = payload.bits(low + width - 1, low);
-    Some(signal.clone().changed(|signal| (signal.window, signal.place) = (0, place)))
+    let place = in_frame(signal.place)?;
+    let word = in_frame(signal.word).unwrap_or(place);
+    Some(signal.clone().changed(|signal| (signal.window, signal.place, signal.word) = (0, place, word)))
 }
 
 /// Makes the message that the parts carry together.

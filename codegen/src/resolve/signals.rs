@@ -100,6 +100,7 @@ impl Resolver<'_> {
             types: merged.types.clone(),
             window: 0,
             place,
+            word: place,
             run: None,
             encoding,
             unit,

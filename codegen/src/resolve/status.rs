@@ -187,6 +187,7 @@ impl Resolver<'_> {
             name: name.to_owned(),
             doc: remarks!(bit).doc(path, Some(outer)),
             bit: self.number_of_bit(path, bit, word)?,
+            is_by_byte: bit.byte.is_some(),
             severity: severity.map(|index| SEVERITIES[index].1),
             set_when: text(bit.set_when.as_ref()),
             clear_when: text(bit.clear_when.as_ref()),

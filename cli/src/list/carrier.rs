@@ -1,0 +1,31 @@
+//! How a long message travels: in numbered parts, or by a transport.
+
+use canspec_codegen::model::{Carrier, LongMessage, Parts, Protocol};
+
+/// Says how many bytes or parts it has.
+pub fn text(protocol: &Protocol, long: &LongMessage) -> String {
+    match &long.carrier {
+        Carrier::Parts(known) => parts(protocol, long, known),
+        Carrier::Transport(transport) => {
+            let (least, most) = (long.shortest(), long.longest());
+            let lengths: Vec<_> = match long.lengths.as_slice() {
+                [] if least == most => vec![most.to_string()],
+                [] => vec![format!("{least} to {most}")],
+                several => several.iter().map(u16::to_string).collect(),
+            };
+            format!("{} bytes by {}", lengths.join(" or "), protocol[*transport].name)
+        }
+        // The enum may grow.
+        _ => String::new(),
+    }
+}
+
+/// Says in how many parts a long message travels, and how they are numbered.
+fn parts(protocol: &Protocol, long: &LongMessage, parts: &Parts) -> String {
+    let of_models = parts.model_firsts.iter().map(|own| format!("{} ({})", own.value, protocol[own.model].name));
+    let firsts: Vec<_> = parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
+    let (least, most) = (long.parts_of(long.shortest()), long.parts_of(long.longest()));
+    let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    let silence = parts.silence.map_or_else(String::new, |time| format!(", until `{}`", protocol.timing[time].name));
+    format!("in {count} parts of {} bytes, numbered from {}{silence}", parts.size, firsts.join(" or "))
+}

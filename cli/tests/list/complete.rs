@@ -1,0 +1,157 @@
+//! Each text, number and name of a model stands in the full form, and in JSON.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use canspec_codegen::model::{Doc, NamedValue, Protocol, Range, Signal, StatusBit};
+use canspec_codegen::number::Rational;
+use canspec_codegen::text::Text;
+use serde_json::Value;
+
+use super::{list, object, protocol, specs};
+
+/// What must be found, each with what it is.
+type Facts = BTreeSet<(&'static str, String)>;
+
+#[test]
+fn all_that_a_spec_says_stands_in_the_full_form() {
+    for spec in specs() {
+        // A table breaks lines between words.
+        let full = without_blanks(&list(&spec, &["--full"]));
+        for (what, fact) in facts(&protocol(&spec)) {
+            assert!(full.contains(&without_blanks(&fact)), "{}: {what} `{fact}`", spec.display());
+        }
+    }
+}
+
+#[test]
+fn all_that_a_spec_says_stands_in_json() {
+    for spec in specs() {
+        let mut texts = BTreeSet::new();
+        collect(&object(&spec), &mut texts);
+        for (what, fact) in facts(&protocol(&spec)) {
+            let fact = if what == "bit rate" { format!("{fact}000") } else { fact };
+            assert!(texts.contains(&fact), "{}: {what} `{fact}`", spec.display());
+        }
+    }
+}
+
+#[test]
+fn a_message_alone_has_its_notes_and_the_errata_that_it_names() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/infy.yaml");
+    let shown = without_blanks(&list(&spec, &["--message", "set_module_output"]));
+    let protocol = protocol(&spec);
+    let message = protocol.messages.iter().find(|message| message.name == "set_module_output").expect("it is there");
+    let mut facts = Facts::new();
+    message.signals.iter().for_each(|signal| of_signal(&protocol, signal, &mut facts));
+    of_doc(&message.doc, &mut facts);
+    let named = protocol.errata.iter().filter(|erratum| message.doc.errata.contains(&erratum.name));
+    facts.extend(named.map(|erratum| ("reason", erratum.because.for_people().to_owned())));
+    assert!(facts.len() > 30, "{facts:?}");
+    for (what, fact) in facts {
+        assert!(shown.contains(&without_blanks(&fact)), "{what} `{fact}`");
+    }
+}
+
+fn without_blanks(text: &str) -> String {
+    text.split_whitespace().collect()
+}
+
+/// Collects texts and numbers, also those inside of others.
+fn collect(value: &Value, texts: &mut BTreeSet<String>) {
+    match value {
+        Value::String(text) => {
+            texts.insert(text.clone());
+        }
+        Value::Number(number) => {
+            texts.insert(number.to_string());
+        }
+        Value::Array(items) => items.iter().for_each(|item| collect(item, texts)),
+        Value::Object(members) => members.values().for_each(|member| collect(member, texts)),
+        Value::Null | Value::Bool(_) => {}
+    }
+}
+
+fn facts(protocol: &Protocol) -> Facts {
+    let mut facts = Facts::new();
+    protocol.docs().into_iter().for_each(|doc| of_doc(doc, &mut facts));
+    let rates = protocol.bit_rates.iter().chain(protocol.models.iter().flat_map(|model| &model.bit_rates));
+    facts.extend(rates.map(|rate| ("bit rate", (rate / 1000).to_string())));
+    for erratum in &protocol.errata {
+        for (what, text) in [("print", &erratum.prints), ("use", &erratum.uses), ("reason", &erratum.because)] {
+            facts.insert((what, text.for_people().to_owned()));
+        }
+    }
+    for enumeration in protocol.enumerations.iter() {
+        enumeration.values.iter().for_each(|value| of_value(value, &mut facts));
+    }
+    let contents = protocol.contents().flat_map(|message| &message.signals);
+    contents.for_each(|signal| of_signal(protocol, signal, &mut facts));
+    for model in &protocol.models {
+        for own in &model.types {
+            own.range.iter().for_each(|range| of_range(range, &mut facts));
+            let numbers = [own.scale, own.offset, own.default].into_iter().flatten();
+            facts.extend(numbers.map(|number| ("number of a model", number.to_string())));
+        }
+        facts.extend(model.facts.iter().map(|(name, _)| ("fact", name.for_people().to_owned())));
+    }
+    arrays(protocol, &mut facts);
+    facts
+}
+
+/// Replaces the numbered titles of elements by that of their array, which is listed once.
+fn arrays(protocol: &Protocol, facts: &mut Facts) {
+    for message in protocol.contents() {
+        for array in &message.arrays {
+            for element in &array.elements {
+                let title = message[*element].doc.title.as_ref();
+                let title = title.map(|title| ("title", title.for_people().to_owned()));
+                facts.retain(|fact| Some(fact) != title.as_ref());
+            }
+            of_doc(&array.doc, facts);
+            facts.insert(("array", array.name.clone()));
+        }
+    }
+}
+
+fn of_doc(doc: &Doc, facts: &mut Facts) {
+    let texts = [("title", &doc.title), ("note", &doc.note), ("section", &doc.section)];
+    let texts = texts.into_iter().filter_map(|(what, text)| Some((what, text.as_ref()?)));
+    let errata = doc.errata.iter().map(|name| ("erratum", name));
+    facts.extend(texts.chain(errata).map(|(what, text): (_, &Text)| (what, text.for_people().to_owned())));
+}
+
+fn of_value(value: &NamedValue, facts: &mut Facts) {
+    facts.insert(("named value", value.name.clone()));
+    facts.extend(value.title.iter().map(|title| ("title of a value", title.for_people().to_owned())));
+}
+
+fn of_range(range: &Range, facts: &mut Facts) {
+    facts.extend([range.minimum, range.maximum].map(|end| ("end of a range", end.to_string())));
+}
+
+fn of_signal(protocol: &Protocol, signal: &Signal, facts: &mut Facts) {
+    of_doc(&signal.doc, facts);
+    facts.extend(signal.unit.map(|unit| ("unit", unit.symbol.to_string())));
+    if signal.encoding.by_model().is_empty() {
+        signal.ranges().for_each(|(range, _)| of_range(&range, facts));
+    }
+    signal.specials.iter().for_each(|value| of_value(value, facts));
+    facts.extend(signal.element.is_none().then(|| ("signal", signal.name.clone())));
+    for own in signal.on_each() {
+        own.range.iter().for_each(|range| of_range(range, facts));
+        let Some(linear) = own.encoding.linear() else { continue };
+        facts.extend((linear.scale != Rational::ONE).then(|| ("scale", linear.scale.to_string())));
+        facts.extend((linear.offset != Rational::ZERO).then(|| ("offset", linear.offset.to_string())));
+    }
+    let word = signal.encoding.status_word();
+    word.into_iter().flat_map(|word| protocol[word].bits_in(signal.place)).for_each(|bit| of_bit(bit, facts));
+    signal.encoding.parts().iter().for_each(|part| of_signal(protocol, part, facts));
+}
+
+fn of_bit(bit: &StatusBit, facts: &mut Facts) {
+    of_doc(&bit.doc, facts);
+    facts.insert(("status bit", bit.name.clone()));
+    let texts = [&bit.set_when, &bit.clear_when, &bit.effect, &bit.led];
+    facts.extend(texts.into_iter().flatten().map(|text| ("condition or effect", text.for_people().to_owned())));
+}
