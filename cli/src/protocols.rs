@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::model::Protocol;
 use canspec_codegen::source::Source;
-use canspec_codegen::{Bases, Outcome, compile, nearest};
+use canspec_codegen::{Bases, Outcome, compile, compile_proven, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
@@ -33,6 +33,19 @@ impl One {
     /// Compiles the chosen spec.
     pub fn load(&self) -> Result<Protocol, Failure> {
         load_one(&self.choice()?)
+    }
+
+    /// Compiles the chosen spec, although examples or other checks contradict it. What is wrong comes with it.
+    pub fn load_unproven(&self) -> Result<(Protocol, Option<Box<Diagnostics>>), Failure> {
+        let choice = self.choice()?;
+        match (load_one(&choice), choice.specs.as_slice()) {
+            (Ok(protocol), _) => Ok((protocol, None)),
+            (Err(Failure::Spec(diagnostics)), [path]) => match compile_proven(chosen_file(&choice, path)?) {
+                Ok(protocol) => Ok((protocol, Some(diagnostics))),
+                Err(_) => Err(Failure::Spec(diagnostics)),
+            },
+            (Err(failure), _) => Err(failure),
+        }
     }
 }
 
