@@ -88,10 +88,10 @@ fn numbers(first: i64, last: i64) -> String {
 fn mode(protocol: &Protocol, mode: &Mode) -> Row {
     let patterns =
         [("request", &mode.request), ("one", &mode.one), ("each", &mode.each), ("coordinator", &mode.coordinator)];
-    let mut made = row(vec![mode.name.clone(), text(mode.doc.section.as_ref())], &mode.doc, Vec::new());
+    let mut item = row(vec![mode.name.clone(), text(mode.doc.section.as_ref())], &mode.doc, Vec::new());
     let shown = patterns.into_iter().filter_map(|(word, pattern)| Some((word, pattern.as_ref()?)));
-    made.below.extend(shown.map(|(word, pattern)| format!("{word}: {}", shown_by(protocol, pattern))));
-    made
+    item.below.extend(shown.map(|(word, pattern)| format!("{word}: {}", shown_by(protocol, pattern))));
+    item
 }
 
 /// Says what an identifier shows in an addressing mode.
@@ -107,14 +107,14 @@ fn shown_by(protocol: &Protocol, pattern: &AddressPattern) -> String {
 fn access(protocol: &Protocol, access: &Access) -> Row {
     let Access { name, doc, kinds, carries, answers, every, from, .. } = access;
     let names = |kinds: &[Kind]| kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-    let mut made = row(vec![name.clone(), text(doc.section.as_ref())], doc, Vec::new());
-    made.below.push(format!("frames: {}; with fields: {}", names(kinds), names(carries)));
+    let mut item = row(vec![name.clone(), text(doc.section.as_ref())], doc, Vec::new());
+    item.below.push(format!("frames: {}; with fields: {}", names(kinds), names(carries)));
     let answers = answers.entries().filter_map(|(mode, who)| Some((mode, (*who)?)));
     let answers: Vec<_> = answers.map(|(mode, who)| format!("{}: {}", protocol[mode].name, words::who(who))).collect();
-    made.below.push(format!("answers: {}", answers.join(", ")));
-    made.below.extend((*from == Side::Controller).then(|| "the controller sends the reports".to_owned()));
-    made.below.extend(every.map(|timing| format!("every `{}`", protocol[timing].name)));
-    made
+    item.below.push(format!("answers: {}", answers.join(", ")));
+    item.below.extend((*from == Side::Controller).then(|| "the controller sends the reports".to_owned()));
+    item.below.extend(every.map(|timing| format!("every `{}`", protocol[timing].name)));
+    item
 }
 
 fn transport(protocol: &Protocol, known: &Transport) -> Row {

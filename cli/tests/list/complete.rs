@@ -82,7 +82,7 @@ fn facts(protocol: &Protocol) -> Facts {
             facts.insert((what, text.for_people().to_owned()));
         }
     }
-    for enumeration in protocol.enumerations.iter() {
+    for enumeration in &protocol.enumerations {
         enumeration.values.iter().for_each(|value| of_value(value, &mut facts));
     }
     let contents = protocol.contents().flat_map(|message| &message.signals);

@@ -100,7 +100,8 @@ fn bits(signal: &Value, data: &[u8]) -> Value {
     let [first, last, high, low] = ["first", "last", "high", "low"].map(|key| number(place, key));
     if !signal["least_bytes"].is_null() {
         let text = &data[first..=last.min(data.len() - 1)];
-        return Value::from(text.iter().map(|byte| format!("{byte:02X}")).collect::<String>());
+        let digits: Vec<_> = text.iter().map(|byte| format!("{byte:02X}")).collect();
+        return Value::from(digits.concat());
     }
     // What a short frame lacks is 0.
     let byte = |place: usize| data.get(place).copied().unwrap_or(0);

@@ -35,7 +35,7 @@ pub struct Signal<'a> {
     absent: Option<&'a str>,
     /// The raw value that the device starts with.
     default: Option<i128>,
-    bits: Vec<Bit<'a>>,
+    bits: Vec<StatusBit<'a>>,
     out_of_range: Option<&'static str>,
     power_off: Option<&'static str>,
     #[serde(rename = "in")]
@@ -57,7 +57,7 @@ struct Element<'a> {
 
 /// A bit of a status word.
 #[derive(Serialize)]
-struct Bit<'a> {
+struct StatusBit<'a> {
     name: &'a str,
     #[serde(flatten)]
     remarks: Remarks<'a>,
@@ -114,7 +114,7 @@ impl<'a> Signal<'a> {
             values: Value::all(protocol, protocol.named_values(signal)),
             absent: meaning::absent(protocol, signal),
             default: signal.default,
-            bits: Bit::all(protocol, signal),
+            bits: StatusBit::all(protocol, signal),
             out_of_range: signal.conduct.out_of_range.map(words::out_of_range),
             power_off: signal.conduct.keeps.map(words::power_off),
             kinds: signal.kinds.iter().map(|kind| kind.name()).collect(),
@@ -131,7 +131,7 @@ impl<'a> Element<'a> {
     }
 }
 
-impl<'a> Bit<'a> {
+impl<'a> StatusBit<'a> {
     fn all(protocol: &'a Protocol, signal: &'a model::Signal) -> Vec<Self> {
         meaning::status_bits(protocol, signal).map(|bit| Self::of(protocol, signal, bit)).collect()
     }

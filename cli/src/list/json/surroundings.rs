@@ -68,11 +68,12 @@ impl<'a> Transport<'a> {
         let field = |field: FieldId| protocol[field].name.as_str();
         let groups = match &known.standard {
             Standard::J1939(groups) => Some(groups),
-            _ => None,
+            // The enum may grow.
+            Standard::Isotp(_) | _ => None,
         };
         let fill = match known.standard {
             Standard::Isotp(isotp) => isotp.fill,
-            _ => None,
+            Standard::J1939(_) | _ => None,
         };
         Self {
             name: &known.name,
