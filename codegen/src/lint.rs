@@ -2,6 +2,7 @@
 //!
 //! They apply before names are resolved, so a slip in a definition is shown at the definition.
 
+mod binary;
 mod comment;
 mod order;
 mod quantity;
@@ -25,12 +26,13 @@ pub(crate) struct Written<'a> {
 type Lint = fn(&Written) -> Vec<Diagnostic>;
 
 /// The rules on how a spec is written, in order, each with its test.
-pub(crate) const RULES: [(&Rule, Lint); 5] = [
+pub(crate) const RULES: [(&Rule, Lint); 6] = [
     (&comment::COMMENT, comment::lint),
     (&quantity::QUANTITY, quantity::lint),
     (&spelling::SPELLING, spelling::lint),
     (&order::ORDER, order::lint),
     (&uneven::UNEVEN, uneven::lint),
+    (&binary::BINARY, binary::lint),
 ];
 
 /// Applies every rule to a spec that could be read. What is taken over from another spec is judged

@@ -34,7 +34,7 @@ impl Rational {
         (denominator != 0).then_some(Self { numerator: reduced(numerator)?, denominator: reduced(denominator)? })
     }
 
-    /// Reads `12`, `-40`, `0x1F`, `41.5` or `1/1024`.
+    /// Reads `12`, `-40`, `0x1F`, `0b101`, `41.5` or `1/1024`.
     pub fn parse(text: &str) -> Option<Self> {
         let (numerator, denominator) = match text.split_once('/') {
             Some((numerator, denominator)) => (numerator, natural(denominator)?),
@@ -131,12 +131,11 @@ fn is_decimal(digits: &str) -> bool {
     !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Reads an unsigned decimal or `0x` hexadecimal number.
+/// Reads an unsigned number: decimal, hexadecimal after `0x`, or binary after `0b`.
 fn natural(text: &str) -> Option<i128> {
-    let (digits, radix) = match text.strip_prefix("0x") {
-        Some(digits) => (digits, 16),
-        None => (text, 10),
-    };
+    let prefixed = [("0x", 16), ("0b", 2)].into_iter();
+    let mut prefixed = prefixed.filter_map(|(prefix, radix)| Some((text.strip_prefix(prefix)?, radix)));
+    let (digits, radix) = prefixed.next().unwrap_or((text, 10));
     let plain = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     plain.then(|| i128::from_str_radix(digits, radix).ok()).flatten()
 }
@@ -203,6 +202,7 @@ mod tests {
         assert_eq!(parts("1/1024"), Some((1, 1024)));
         assert_eq!(parts("-40"), Some((-40, 1)));
         assert_eq!(parts("0xFD"), Some((253, 1)));
+        assert_eq!(parts("0b101"), Some((5, 1)));
         assert_eq!(parts("18446744073709551615"), Some((18_446_744_073_709_551_615, 1)));
     }
 
@@ -215,8 +215,10 @@ mod tests {
     #[test]
     fn what_is_no_number_is_refused() {
         let too_long = "9".repeat(45);
-        for text in ["", "-", "0x", "0X1F", "0x1.5", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", &too_long]
-        {
+        for text in [
+            "", "-", "0x", "0X1F", "0x1.5", "0b", "0b2", "0b1.1", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1",
+            "1/-2", &too_long,
+        ] {
             assert_eq!(parts(text), None, "{text}");
         }
     }

@@ -176,10 +176,13 @@ impl<'a> Checker<'a> {
                 let text = format!("this frame says {read} for `{}`, one digit from {}", signal.name, meaning.text);
                 contradicted(self.frame_at(), text, (meaning.path.at_value(), "what it means"))
             } else {
-                let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
+                let [meant, read] = with_blanks(&meaning.text, &read);
+                let text = format!("`{}` is {meant} here, but the frame says {read}", signal.name);
                 contradicted(meaning.path.at_value(), text, field)
             };
-            let help = self.by_other_order(signal).or_else(|| unnamed_bits(&reading.value, &read));
+            let help = fill(&reading.value, &meaning.text)
+                .or_else(|| self.by_other_order(signal))
+                .or_else(|| unnamed_bits(&reading.value, &read));
             let Some(about_offset) = about_offset(signal).filter(|_| help.is_none()) else {
                 return Err(Box::new(diagnostic.help_if(help)));
             };
@@ -369,6 +372,24 @@ fn shown(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
             format!("[{}]", set.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))
         }
     }
+}
+
+/// Shows the ends of two texts if only blanks tell them apart.
+fn with_blanks(meant: &str, read: &str) -> [String; 2] {
+    let is_alike = meant.trim() == read.trim();
+    [meant, read].map(|text| if is_alike { format!("`{text}`") } else { text.to_owned() })
+}
+
+/// Says which byte fills up a text that is longer than the one that is meant.
+fn fill(value: &Value, meant: &str) -> Option<String> {
+    let Value::Text(read) = value else { return None };
+    let rest = read.strip_prefix(meant)?;
+    let byte = rest.bytes().next().filter(|byte| !byte.is_ascii_alphanumeric())?;
+    rest.bytes().all(|other| other == byte).then(|| {
+        format!(
+            "if the byte {byte:#04X} fills up the text, write `fill: {byte:#04X}` in the field; else add it to the text"
+        )
+    })
 }
 
 /// Says how to write a status bit without a name in an example.

@@ -115,7 +115,10 @@ fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
     let mut found = after.iter().filter(|word| !before.contains(word));
     let is_regrouped = found.clone().count() > 1;
     let is_certain = |word: &str| is_regrouped || word.len() >= LONG_WORD || vocabulary.has_in_names(word);
+    // People seldom mistype the first letter, and `altitude` is a word beside `latitude`.
+    let begins_alike = |word: &str| is_regrouped || before.iter().any(|other| other[..1] == word[..1]);
     lost.any(|word| !vocabulary.has_elsewhere(word, name))
+        && found.clone().all(|word| begins_alike(word))
         && found.all(|word| word.len() > 2 && vocabulary.has_often(word, name) && is_certain(word))
 }
 

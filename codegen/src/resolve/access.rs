@@ -101,6 +101,8 @@ impl Resolver<'_> {
     fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), access: &Access) {
         if access.from == Side::Controller {
             self.check_receiver(at, who, &access.name);
+        } else if who == Who::Nobody && access.kinds == [Kind::Report] {
+            self.refuse_no_sender(at, mode, &access.name);
         } else if who != Who::Nobody && mode.reply(who).is_none() {
             let message = format!("the addressing mode `{}` has no `{word}`", mode.name);
             let others: Vec<_> = ANSWERS.iter().filter(|(_, who)| mode.reply(*who).is_some()).collect();
@@ -134,6 +136,17 @@ impl Resolver<'_> {
             let help = "say who gets it: `one` module, or `each` of several";
             self.error_with_help(&rules::ACCESS, at.at_value(), message, help);
         }
+    }
+
+    /// Refuses a report of a module that nobody sends. The words say who answers, or who reports unasked.
+    fn refuse_no_sender(&mut self, at: &Path, mode: &Mode, access: &str) {
+        let message = format!("nobody sends the report `{access}`");
+        let senders: Vec<_> = ANSWERS.iter().filter(|(_, who)| mode.reply(*who).is_some()).collect();
+        let help = match senders.as_slice() {
+            [] => format!("add `one:` to `addressing.{}`, and write `one` here for a report of one module", mode.name),
+            [(sender, _), ..] => format!("say who sends it: write `{sender}`"),
+        };
+        self.error_with_help(&rules::ACCESS, at.at_value(), message, help);
     }
 
     /// Refuses `every` if there is no report.

@@ -136,8 +136,27 @@ impl Resolver<'_> {
             let most = self.integer(path, most, 2, MOST_LONG_ELEMENTS)?;
             return Some((Some(self.integer(path, least, 1, most - 1)?), most));
         }
+        if let Some(numbers) = text.split_once("..") {
+            self.refuse_numbers(path, text, numbers);
+            return None;
+        }
         let most = if is_long { MOST_LONG_ELEMENTS } else { MOST_ELEMENTS };
         Some((None, self.integer(path, text, 2, most)?))
+    }
+
+    /// Refuses the numbers of the elements in place of how many there are.
+    fn refuse_numbers(&mut self, path: &Path, text: &str, (first, last): (&str, &str)) {
+        let [first, last] = [first, last].map(|end| end.trim().parse::<u16>().ok());
+        let of_numbers =
+            first.zip(last).and_then(|(first, last)| Some((first, last.checked_sub(first)?.checked_add(1)?)));
+        let help = match of_numbers {
+            Some((1, count)) => format!("write `repeat: {count}`"),
+            Some((first, count)) => format!("for elements with these numbers, write `repeat: {count}, first: {first}`"),
+            None => "write how many elements there are".to_owned(),
+        };
+        let message =
+            format!("`{text}` is a range, and only a message longer than a frame has arrays of several lengths");
+        self.error_with_help(&rules::ARRAY, path.at_value(), message, help);
     }
 
     /// Refuses a key that needs `repeat` beside it.

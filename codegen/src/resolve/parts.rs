@@ -196,7 +196,7 @@ impl Resolver<'_> {
             let written = self.spec.messages.get(&long.content.name).and_then(|message| message.parts.as_ref());
             let Some(text) = written.and_then(|parts| parts.count.clone()) else { continue };
             if long.parts().is_some_and(|parts| parts.length.is_some()) {
-                let text = "`count` means nothing beside `length`: the number of bytes says how many elements are real";
+                let text = "`count` means nothing beside `length`, which says how many elements come";
                 self.error_with_help(&rules::PARTS, path.at_key(), text.to_owned(), "take it out");
             } else if is_varying {
                 let count = self.counting(&path, &text, messages);

@@ -73,7 +73,8 @@ impl Resolver<'_> {
         let mut numbers = Vec::new();
         for (index, text) in values.iter().enumerate() {
             let at = if values.len() > 1 { path.index(index) } else { path.clone() };
-            numbers.push(self.integer(&at, text, 0, greatest)?);
+            let help = || room(name, place, greatest, identifier);
+            numbers.push(self.integer_or(&at, text, (0, greatest), help)?);
         }
         let (value, open) = self.alternatives(path, (name, place), &numbers)?;
         let tells = [(Key::Normal, normal), (Key::Continues, continues)].into_iter().find(|(_, value)| value.is_some());
@@ -187,6 +188,21 @@ impl Resolver<'_> {
             self.error_with_help(&rules::RANGE, path.at_value(), message, format!("write `{last}..{first}`"));
         }
         Some((field, start, end))
+    }
+}
+
+/// Says which numbers a field can have, and how wide the identifiers are if a number has more than all of their bits.
+fn room(name: &str, place: SelectorPlace, greatest: u64, identifier: &Identifier) -> String {
+    let numbers = format!("a whole number from 0 to {greatest}");
+    match place {
+        SelectorPlace::Identifier(field) if !identifier.extended => {
+            let width = identifier.fields[field].width;
+            format!(
+                "`{name}` has {width} of the 11 bits of this protocol's identifiers: write {numbers}; \
+                 if they have 29 bits, say so in `identifier`, as in `{name}: {{bits: 28..0}}`"
+            )
+        }
+        SelectorPlace::Identifier(_) | SelectorPlace::Payload(_) => format!("write {numbers}"),
     }
 }
 

@@ -77,6 +77,20 @@ impl Resolver<'_> {
     where
         N: Copy + Display + Into<i128> + TryFrom<i128>,
     {
+        self.integer_or(path, text, (first, last), || format!("write a whole number from {first} to {last}"))
+    }
+
+    /// Reads a whole number between two limits, or says what to write instead.
+    pub fn integer_or<N>(
+        &mut self,
+        path: &Path,
+        text: &str,
+        (first, last): (N, N),
+        help: impl Fn() -> String,
+    ) -> Option<N>
+    where
+        N: Copy + Display + Into<i128> + TryFrom<i128>,
+    {
         let number = self.number(path, text)?;
         let whole = number.to_integer().filter(|whole| (first.into()..=last.into()).contains(whole));
         let fitting = whole.and_then(|whole| N::try_from(whole).ok());
@@ -84,8 +98,7 @@ impl Resolver<'_> {
             let is_whole = number.to_integer().is_some();
             let what =
                 if is_whole { format!("lies outside {first}..{last}") } else { "is not a whole number".to_owned() };
-            let help = format!("write a whole number from {first} to {last}");
-            self.error_with_help(&rules::NUMBER, path.at_value(), format!("`{text}` {what}"), help);
+            self.error_with_help(&rules::NUMBER, path.at_value(), format!("`{text}` {what}"), help());
         }
         fitting
     }

@@ -20,7 +20,8 @@ pub struct Form {
     message: &'static str,
 }
 
-const NUMBER: Form = Form { pattern: "N", message: "Write a number: `12`, `-40`, `0x1F`, `41.5` or `1/1024`." };
+const NUMBER: Form =
+    Form { pattern: "N", message: "Write a number: `12`, `-40`, `0x1F`, `0b101`, `41.5` or `1/1024`." };
 const RANGE: Form = Form { pattern: r"N\.\.N( [^0-9 ]+)?", message: "Write the limits as `41.5..58.5`." };
 /// From the most to the least significant.
 pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
@@ -162,7 +163,7 @@ impl Demand {
 impl Form {
     /// Demands the form of a text.
     pub fn demand(self, value: &mut Map<String, Value>) {
-        let number = r"-?(0x[0-9A-Fa-f]+|[0-9]+(\.[0-9]+)?)(/(0x[0-9A-Fa-f]+|[0-9]+))?";
+        let number = r"-?(0x[0-9A-Fa-f]+|0b[01]+|[0-9]+(\.[0-9]+)?)(/(0x[0-9A-Fa-f]+|0b[01]+|[0-9]+))?";
         value.insert("pattern".to_owned(), format!("^{}$", self.pattern.replace('N', number)).into());
         value.insert("patternErrorMessage".to_owned(), self.message.into());
     }

@@ -2,7 +2,7 @@
 
 use canspec_runtime::Place;
 
-use super::{Checked, misfitting, shown, wrong};
+use super::{Checked, fill, misfitting, shown, with_blanks, wrong};
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, Value, decode, encode_long};
 use crate::model::{LongExample, LongMessage, Protocol, Said, Standard, TransportFrame};
@@ -130,8 +130,10 @@ impl Checker<'_> {
             };
             if !is_said {
                 let read = shown(self.protocol, signal, reading);
-                let text = format!("`{}` is {} here, but the frames say {read}", signal.name, meaning.text);
-                return Err(wrong(meaning.path.at_value(), text));
+                let help = fill(&reading.value, &meaning.text);
+                let [meant, read] = with_blanks(&meaning.text, &read);
+                let text = format!("`{}` is {meant} here, but the frames say {read}", signal.name);
+                return Err(Box::new(wrong(meaning.path.at_value(), text).help_if(help)));
             }
         }
         if self.example.means.is_empty() && !assembled.decoded.signals.is_empty() {
