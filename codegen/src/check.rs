@@ -17,6 +17,7 @@ mod no_unit;
 mod nobody_replies;
 mod outside_frame;
 mod overlap;
+mod product_limit;
 mod quantity_path;
 mod range_step;
 mod range_width;
@@ -47,7 +48,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 34] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 35] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -71,6 +72,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 34] = [
     (&starting::STARTING, Some(starting::check)),
     (&role::ROLE, Some(role::check)),
     (&rules::QUANTITY_PATH, Some(quantity_path::check)),
+    (&rules::PRODUCT_LIMIT, Some(product_limit::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),
     (&rust_name::RUST_NAME, Some(rust_name::check)),

@@ -48,7 +48,7 @@ pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Messag
 pub use note::NoteRule;
 pub use numeral::Numeral;
 pub use place::WrittenPlace;
-pub use quantity::{Fixed, QuantityPaths, SignalPath};
+pub use quantity::{FieldPath, Fixed, Limit, QuantityPaths, SignalPath};
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
@@ -110,6 +110,8 @@ pub struct Protocol {
     pub recognition: Recognition,
     /// Where quantities are read and set, by vendor-neutral names.
     pub quantities: Vec<QuantityPaths>,
+    /// Limits of the product in which the devices work.
+    pub limits: Vec<Limit>,
     /// Device models in the order of the spec.
     pub models: Table<ModelId, DeviceModel>,
     /// Times that the document states.

@@ -20,6 +20,7 @@ mod messages;
 mod parts;
 mod patterns;
 mod printed;
+mod product;
 mod quantities;
 pub(crate) mod rules;
 mod runs;
@@ -125,11 +126,12 @@ impl Resolver<'_> {
         let modes = self.modes(&identifier, &address_types);
         let directions = direction::directions(&identifier, &address_types, &modes);
         let accesses = self.accesses(&modes, &timing);
-        let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
+        let (mut messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         self.check_width_of_words();
         self.check_bits_by_byte();
         let foreign = self.foreign(&identifier);
         let quantities = self.quantities(&messages);
+        let limits = self.limits(&quantities, &mut messages);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
         let (sequences, types, documents) = (self.sequences(), self.type_docs(), self.documents());
@@ -151,6 +153,7 @@ impl Resolver<'_> {
             accesses,
             foreign,
             quantities,
+            limits,
             messages,
             transports: self.tables.transports,
             long_messages: self.tables.long_messages,

@@ -50,7 +50,7 @@ pub fn compare_encoding(
 /// Returns values around the limits, around special values, between the steps, and at random; what is no number refuses
 /// them all.
 pub fn candidates(signal: &Signal, random: &mut fastrand::Rng) -> Vec<f64> {
-    let limits = signal.ranges().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
+    let limits = signal.limits().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
     let mut values =
         vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
     values.extend(limits.flat_map(|limit| [limit, limit.next_up(), limit.next_down()]));

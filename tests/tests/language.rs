@@ -14,7 +14,7 @@ const RULES: &str = "docs/rules.md";
 const HOW_TO: &str = "docs/how-to";
 
 /// Headings of the reference, each with a spec fragment in which `nothing` stands where the keys below that heading may.
-const PLACES: [(&str, &str); 25] = [
+const PLACES: [(&str, &str); 26] = [
     ("The top level", "nothing: x"),
     ("`document`", "document: {title: t, version: v, nothing: x}"),
     ("Fields", "identifier:\n  command: {bits: 28..16, nothing: x}"),
@@ -36,6 +36,7 @@ const PLACES: [(&str, &str); 25] = [
     ("`models`", "models:\n  small: {nothing: x}"),
     ("`quantities`", "quantities:\n  voltage: {nothing: x}"),
     ("Paths", "quantities:\n  voltage: {read: {signal: a.b, nothing: x}}"),
+    ("`product`", "product: {nothing: x}"),
     ("`timing`", "timing:\n  pause: {time: 1 s, nothing: x}"),
     ("`procedures`", "procedures:\n  start: {steps: [], nothing: x}"),
     ("`errata`", "errata:\n  E1: {kind: note, prints: a, uses: b, because: c, nothing: x}"),
@@ -139,14 +140,24 @@ fn listing(document: &str, spec: &[Line], diagnostics: &Diagnostics) -> String {
     if lines.is_empty() { "  nothing is wrong with it".to_owned() } else { lines.join("\n") }
 }
 
-/// Compiles a spec, which can be based on the smallest one.
+/// Compiles a spec, which can be based on the smallest one or on a built-in one.
 fn compiled(spec: &[Line]) -> Diagnostics {
     let lines: Vec<_> = spec.iter().map(|(_, line)| *line).collect();
     let reference = read(REFERENCE);
     let smallest = blocks(&reference).swap_remove(0).lines.iter().map(|(_, line)| *line).collect::<Vec<_>>().join("\n");
-    let bases = Bases::from_iter([("charger", smallest)]);
+    let bases: Bases = built_in().chain([("charger".to_owned(), smallest)]).collect();
     let source = Source::new("spec.yaml", lines.join("\n").into_bytes()).and_then(|source| bases.add_to(source));
     source.map_or_else(|diagnostics| diagnostics, |source| compile(source).diagnostics)
+}
+
+/// Returns the names and the texts of the built-in specs.
+fn built_in() -> impl Iterator<Item = (String, String)> {
+    let files = fs::read_dir(format!("{}/../specs", env!("CARGO_MANIFEST_DIR"))).expect("the folder is there");
+    let paths = files.flatten().map(|file| file.path());
+    paths.filter(|path| path.extension().is_some_and(|ending| ending == "yaml")).map(|path| {
+        let name = path.file_stem().expect("it has an ending").to_string_lossy().into_owned();
+        (name, fs::read_to_string(path).expect("a spec is a text"))
+    })
 }
 
 /// Returns the blocks of a document that are fenced as YAML.

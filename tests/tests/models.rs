@@ -1,10 +1,10 @@
 //! Device models in the generated code: limits, layouts and messages of their own.
 
 use canspec_protocols::{gcp, infy, megmeet, trio};
-use canspec_runtime::Frame;
+use canspec_runtime::{Addressed, Frame, Quantities, Quantity};
 use canspec_tests::{
-    features_model_layouts as layouts, features_model_limits as limits, features_revisions as revisions,
-    features_scales_by_model as scales, features_values_by_model as values,
+    features_model_layouts as layouts, features_model_limits as limits, features_product_limits as product,
+    features_revisions as revisions, features_scales_by_model as scales, features_values_by_model as values,
 };
 
 /// The limits that the INFY document prints for its models in 3.3: voltage and current.
@@ -69,6 +69,52 @@ fn a_model_without_limits_is_not_held_to_those_of_the_others() {
     // 27 V = 27648 / 1024, and 27648 = 0x6C00.
     let request = of(megmeet::Model::V24, 27.0).expect("24 V modules have no printed limits");
     assert_eq!(request.frame().bytes(), [0x01, 0x00, 0, 0, 0, 0, 0x6C, 0x00]);
+}
+
+#[test]
+fn a_limit_of_the_product_narrows_what_every_model_takes_and_every_request_that_sets_it() {
+    use product::{Model, SetOutput, SetTotal, Target};
+
+    let output = |voltage_v| SetOutput { voltage_v, current_a: 10.0 };
+    let target = Target::Unit(1);
+    // The limit of 45.25 V lies between two steps: 45.25 V would go out as 45.3 V.
+    for (voltage_v, is_taken) in [(14.9, false), (15.0, true), (45.2, true), (45.25, false), (45.3, false)] {
+        assert_eq!(output(voltage_v).set(target).is_ok(), is_taken, "{voltage_v}");
+        for model in Model::ALL {
+            let is_taken = is_taken && (model != Model::Large || voltage_v >= 20.0);
+            assert_eq!(output(voltage_v).within(model).is_ok(), is_taken, "{voltage_v} {}", model.name());
+        }
+    }
+    let refused = output(60.0).set(target).expect_err("more than the fuse bears").to_string();
+    assert_eq!(refused, "`voltage` of `set_output` is 60 V, but its limits are 15 and 45.25 V");
+    let total = |voltage_v, current_a| SetTotal { voltage_v, current_a, step_v: [0, 45] }.set(target).is_ok();
+    assert_eq!([total(45.0, 60.0), total(45.3, 60.0), total(45.0, 60.5)], [true, false, false]);
+    let steps = |step_v| SetTotal { voltage_v: 45.0, current_a: 60.0, step_v }.set(target).is_ok();
+    assert_eq!([[15, 45], [45, 46], [14, 45], [0, 45]].map(steps), [true, false, false, true]);
+    let current = |current_a| SetOutput { voltage_v: 40.0, current_a }.set(target).is_ok();
+    assert_eq!([0.0, 20.0, 20.1].map(current), [true, true, false]);
+    let limits = |model| SetOutput::VOLTAGE.limits_for(model);
+    assert_eq!(Model::ALL.map(limits), [Some((15.0, 45.25)), Some((20.0, 45.25)), Some((15.0, 45.25))]);
+}
+
+#[test]
+fn a_quantity_with_a_limit_of_the_product_is_set_within_it_alone() {
+    let target = <product::Message as Addressed>::module(1).expect("unit 1");
+    let values = |volts| [(Quantity::OUTPUT_VOLTAGE, volts), (Quantity::OUTPUT_CURRENT, 10_000)];
+    let set = |volts| product::Message::set(&values(volts), target).is_ok();
+    assert_eq!([14_900, 15_000, 45_200, 45_300].map(set), [false, true, true, false]);
+    let within = |volts| product::Message::set_within(product::Model::Large, &values(volts), target).is_ok();
+    assert_eq!([15_000, 20_000, 45_200, 45_300].map(within), [false, true, true, false]);
+}
+
+#[test]
+fn a_reply_beyond_a_limit_of_the_product_is_read_and_made() {
+    // 60 V are 600 = 0x258, and 30 A are 41F00000.
+    let frame = Frame::new_raw(0x411, false, [0x02, 0x58, 0, 0, 0x41, 0xF0, 0, 0], 8);
+    let received = product::Message::decode(&frame).expect("a reply");
+    let output = product::SetOutput { voltage_v: 60.0, current_a: 30.0 };
+    assert_eq!(received.content(), &product::Message::SetOutput(output));
+    assert_eq!(received.encode(), Ok(frame));
 }
 
 #[test]

@@ -53,7 +53,7 @@ impl Verdicts {
 /// Returns the limits of a request.
 fn limits(protocol: &Protocol, message: &Message, signal: &Signal, model: Option<ModelId>) -> Option<Range> {
     match model {
-        Some(_) => signal.range_for(model),
+        Some(_) => signal.limits_for(model),
         None => signal.hull(protocol.models_of(message)),
     }
 }

@@ -12,15 +12,21 @@ pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     if rows.is_empty() {
         return Ok(());
     }
+    let limit = (!protocol.limits.is_empty()).then_some("LIMIT");
+    let headings: Vec<_> = ["QUANTITY", "UNIT"].into_iter().chain(limit).chain(["READ"]).collect();
     writeln!(out)?;
-    columns::write(out, &["QUANTITY", "UNIT", "READ"], "SET", &rows)
+    columns::write(out, &headings, "SET", &rows)
 }
 
-fn row(protocol: &Protocol, QuantityPaths { name, read, set, .. }: &QuantityPaths) -> Row {
-    let known = read.as_ref().or(set.as_ref());
-    let unit = known.and_then(|path| protocol.unit_at(path)).map_or_else(String::new, |unit| unit.symbol.to_string());
-    let [read, set] = [read, set].map(|path| path.as_ref().map_or_else(String::new, |path| text(protocol, path)));
-    Row { cells: vec![name.clone(), unit, read], last: vec![set], separator: " ", ..Row::default() }
+fn row(protocol: &Protocol, known: &QuantityPaths) -> Row {
+    let QuantityPaths { name, read, set, also, .. } = known;
+    let unit = protocol.unit_of(known).map_or_else(String::new, |unit| unit.symbol.to_string());
+    let [read, set] = [read, set].map(|path| path.as_ref().map(|path| text(protocol, path)));
+    let also = also.iter().map(|also| format!("{}.{}", protocol[also.message].name, also.field));
+    let limit = protocol.limit_of(known).map(|limit| format!("{}..{}", limit.range.minimum, limit.range.maximum));
+    let limit = (!protocol.limits.is_empty()).then(|| limit.unwrap_or_default());
+    let cells = [name.clone(), unit].into_iter().chain(limit).chain([read.unwrap_or_default()]);
+    Row { cells: cells.collect(), last: set.into_iter().chain(also).collect(), separator: ", ", ..Row::default() }
 }
 
 /// Writes a path, and what a switch is while it is on and off.

@@ -39,6 +39,8 @@ pub struct Counts {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
+    let documented = protocol.documented();
+    let protocol = &*documented;
     let mut counts = Counts::default();
     let mut explained = accused::blame(protocol, diagnostics);
     for (message, frames) in unread::find(protocol) {

@@ -97,8 +97,8 @@ fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
         for signal in message.signals.iter().flat_map(Signal::on_each).filter(is_compared) {
             let is_missed = |end: Rational| !is_below(Some(end.numerator()), EXACT);
-            let ranges = signal.ranges();
-            for (_, path) in ranges.filter(|(range, _)| is_missed(range.minimum) || is_missed(range.maximum)) {
+            let limits = signal.limits();
+            for (_, path) in limits.filter(|(range, _)| is_missed(range.minimum) || is_missed(range.maximum)) {
                 let text = format!(
                     "the limits of `{}.{}` reach 2^{EXACT}, beyond which a single misses integers",
                     message.name, signal.name

@@ -13,7 +13,7 @@ const HARMFUL: [&str; 3] = ["V", "A", "W"];
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        let content = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
+        let content = protocol.whole(message);
         // An array is one field.
         let fields = content.signals.entries().filter(|(_, signal)| signal.element.is_none_or(|of| of.index == 0));
         for (id, signal) in fields {
@@ -26,7 +26,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Tests whether nothing limits what can do harm.
 fn is_unlimited(signal: &Signal) -> bool {
-    signal.unit.is_some_and(|unit| HARMFUL.contains(&&*unit.symbol)) && signal.ranges().next().is_none()
+    signal.unit.is_some_and(|unit| HARMFUL.contains(&&*unit.symbol)) && signal.limits().next().is_none()
 }
 
 /// Tests whether a request carries a signal, alone or in the parts of a long message.

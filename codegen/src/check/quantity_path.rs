@@ -6,8 +6,11 @@ use super::ambiguous::are_alike;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::Reading;
 use crate::interpret::notes::signal_note;
-use crate::model::{Encoding, Fixed, FrameLayout, MessageId, Protocol, QuantityPaths, Signal, SignalId, SignalPath};
+use crate::model::{
+    Encoding, FieldPath, Fixed, FrameLayout, MessageId, Protocol, QuantityPaths, Signal, SignalId, SignalPath, Unit,
+};
 use crate::resolve::rules::QUANTITY_PATH;
+use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for known in &protocol.quantities {
@@ -28,8 +31,63 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             check_request(protocol, set, diagnostics);
             check_states(protocol, set, diagnostics);
         }
+        check_also(protocol, known, diagnostics);
     }
     check_once(protocol, diagnostics);
+    check_set_once(protocol, diagnostics);
+}
+
+/// Tests that other fields that set a quantity are numbers of the same kind in requests.
+fn check_also(protocol: &Protocol, known: &QuantityPaths, diagnostics: &mut Diagnostics) {
+    let (first, also) = (known.set.as_ref().or(known.read.as_ref()), &known.also);
+    let of_path = first.map(|path| (kind_of(protocol, path), path.path.clone()));
+    let of_field = |field: &FieldPath| Some((kind_in(signals_of(protocol, field).next()?.1.unit), field.path.clone()));
+    let Some((wanted, place)) = of_path.or_else(|| of_field(also.first()?)) else { return };
+    for field in also {
+        let name = format!("{}.{}", protocol[field.message].name, field.field);
+        for (id, signal) in signals_of(protocol, field) {
+            let found = kind_in(signal.unit);
+            let (text, help) = if let Some(text) = refused(signal) {
+                (format!("`{name}` {text}"), "name a number that a request sets, or take it out")
+            } else if !protocol.is_sent(&protocol[field.message], id) {
+                (format!("no request carries `{name}`"), "name a number that a request sets, or take it out")
+            } else if found != wanted {
+                (format!("`{name}` {found}, but `{}` {wanted}", known.name), "make them two quantities")
+            } else {
+                continue;
+            };
+            let problem = Diagnostic::error(&QUANTITY_PATH, field.path.at_value(), text).help(help);
+            let is_other = field.path != place && found != wanted;
+            diagnostics.push_first(if is_other { problem.other(place.at_value(), "the quantity") } else { problem });
+        }
+    }
+}
+
+/// Returns the signals of a field, with their ids in what the message says.
+fn signals_of<'a>(protocol: &'a Protocol, path: &'a FieldPath) -> impl Iterator<Item = (SignalId, &'a Signal)> {
+    let content = protocol.whole(&protocol[path.message]);
+    content.signals.entries().filter(|(_, signal)| content.field_name(signal) == path.field)
+}
+
+/// Tests that a field sets one quantity, and is named once.
+fn check_set_once(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let fields = protocol.quantities.iter().flat_map(|known| {
+        known.fields(|message| &protocol[message]).map(move |(message, field, path)| (known, message, field, path))
+    });
+    let fields: Vec<_> = fields.collect();
+    for known in &protocol.quantities {
+        for also in &known.also {
+            let is_same = |(_, message, field, path): &&(&QuantityPaths, MessageId, &str, &Path)| {
+                (*message, *field) == (also.message, also.field.as_str()) && **path != also.path
+            };
+            if let Some((other, .., path)) = fields.iter().find(is_same) {
+                let name = format!("{}.{}", protocol[also.message].name, also.field);
+                let text = format!("`{name}` sets `{}` already", other.name);
+                let problem = Diagnostic::error(&QUANTITY_PATH, also.path.at_value(), text);
+                diagnostics.push(problem.other(path.at_value(), "here").help("take one of the two out"));
+            }
+        }
+    }
 }
 
 /// Tests that a path leads to a number, or to a switch with states.
@@ -88,11 +146,12 @@ fn check_agreement(protocol: &Protocol, [read, set]: [&SignalPath; 2], diagnosti
 
 /// Says what a path leads to.
 fn kind_of(protocol: &Protocol, path: &SignalPath) -> String {
-    match protocol.unit_at(path) {
-        _ if path.states.is_some() => kind_text(QuantityKind::Switch),
-        Some(unit) => in_unit(&unit.symbol),
-        None => kind_text(QuantityKind::Count),
-    }
+    if path.states.is_some() { kind_text(QuantityKind::Switch) } else { kind_in(protocol.unit_at(path)) }
+}
+
+/// Says what a number is.
+fn kind_in(unit: Option<Unit>) -> String {
+    unit.map_or_else(|| kind_text(QuantityKind::Count), |unit| in_unit(&unit.symbol))
 }
 
 fn kind_text(kind: QuantityKind) -> String {

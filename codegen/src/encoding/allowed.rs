@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt::Display;
 
-use crate::model::{Range, Signal};
+use crate::model::{Limit, Range, Signal};
 
 /// The limits of one signal's values, beside the width of its bits.
 #[derive(Clone, Copy, Debug)]
@@ -46,12 +46,7 @@ impl Allowed {
         self.check_by(signal, value, |range| range.has_whole(value))
     }
 
-    fn check_by(
-        &self,
-        signal: &Signal,
-        shown: impl Display,
-        is_within: impl FnOnce(&Range) -> bool,
-    ) -> Result<(), String> {
+    fn check_by(&self, signal: &Signal, shown: impl Display, is_within: impl Fn(&Range) -> bool) -> Result<(), String> {
         let missed = self.missed(signal, is_within);
         missed.map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", signal.unit_text())))
     }
@@ -73,10 +68,12 @@ impl Allowed {
         }
     }
 
-    /// Returns the limits that a number exceeds.
-    fn missed(&self, signal: &Signal, is_within: impl FnOnce(&Range) -> bool) -> Option<String> {
-        let Self::Within { range: Some(range), advice } = self else { return None };
-        let text = || format!("{}..{}{}{advice}", range.minimum, range.maximum, signal.unit_text());
-        (!is_within(range)).then(text)
+    /// Returns the limits that a number exceeds. The limit of the product comes first.
+    fn missed(&self, signal: &Signal, is_within: impl Fn(&Range) -> bool) -> Option<String> {
+        let Self::Within { range, advice } = self else { return None };
+        let of_product = |limit: &Limit| (limit.range, format!(", the limit of `{}` in `product`", limit.quantity));
+        let limits = signal.limit.iter().map(of_product).chain(range.map(|range| (range, (*advice).to_owned())));
+        let (missed, advice) = limits.into_iter().find(|(range, _)| !is_within(range))?;
+        Some(format!("{}..{}{}{advice}", missed.minimum, missed.maximum, signal.unit_text()))
     }
 }

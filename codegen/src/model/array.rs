@@ -43,4 +43,9 @@ impl Message {
     pub fn field_name<'a>(&'a self, signal: &'a Signal) -> &'a str {
         self.array_of(signal).map_or(&signal.name, |array| &array.name)
     }
+
+    /// Returns the signals of a field: one, or the elements of an array.
+    pub fn signals_of<'a>(&'a self, field: &'a str) -> impl Iterator<Item = &'a Signal> {
+        self.signals.iter().filter(move |signal| self.field_name(signal) == field)
+    }
 }

@@ -206,6 +206,17 @@ impl Protocol {
         Some((id, &self[id]))
     }
 
+    /// Returns what a message says: alone, or in several frames together.
+    pub(crate) fn whole<'a>(&'a self, message: &'a Message) -> &'a Message {
+        self.long_message(message).map_or(message, |(_, long)| &long.content)
+    }
+
+    /// Tests whether a signal of what a message says goes to a module, alone or in parts.
+    pub(crate) fn is_sent(&self, message: &Message, signal: SignalId) -> bool {
+        let mut sent = self.layouts_of(message).filter(|frame| frame.is_to_module());
+        sent.any(|frame| self.part_of(frame).is_some() || frame.signals.contains(&signal))
+    }
+
     /// Returns the long message whose numbered parts a message's frames carry.
     pub fn in_parts(&self, message: &Message) -> Option<LongMessageId> {
         message.long.filter(|long| self[*long].parts().is_some())

@@ -1,9 +1,11 @@
 //! Quantities: vendor-neutral names of signals.
 
+use std::borrow::Cow;
+
 use canspec_runtime::Place;
 use serde::{Deserialize, Serialize};
 
-use super::{ExchangeId, FrameLayout, Kind, MessageId, Protocol, Signal, SignalId, Unit, place};
+use super::{ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, Range, Signal, SignalId, Unit, place};
 use crate::syntax::tree::Path;
 
 /// Where a quantity is read and set.
@@ -16,6 +18,34 @@ pub struct QuantityPaths {
     pub read: Option<SignalPath>,
     /// Where it is set.
     pub set: Option<SignalPath>,
+    /// Other fields of requests that set it, as in a total or as a default.
+    pub also: Vec<FieldPath>,
+    /// Place in the spec.
+    pub path: Path,
+}
+
+/// The path to a field that a request carries.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct FieldPath {
+    /// The message.
+    pub message: MessageId,
+    /// Name of the field. It is a signal, or an array of signals.
+    pub field: String,
+    /// Place in the spec.
+    pub path: Path,
+}
+
+/// A limit of the product in which the devices work. Requests to every device model keep to it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Limit {
+    /// The quantity that is limited.
+    pub quantity: String,
+    /// Its lowest and its highest value.
+    pub range: Range,
+    /// Unit of these values.
+    pub unit: Option<Unit>,
     /// Place in the spec.
     pub path: Path,
 }
@@ -53,7 +83,63 @@ pub struct Fixed {
     pub path: Path,
 }
 
+impl Limit {
+    /// Writes it as a spec does: `150..450 V`.
+    pub fn text(&self) -> String {
+        let unit = self.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
+        format!("{}..{}{unit}", self.range.minimum, self.range.maximum)
+    }
+}
+
+impl QuantityPaths {
+    /// Returns the fields that set it, each with the place of its path in the spec.
+    pub(crate) fn fields<'a>(
+        &'a self,
+        message: impl Fn(MessageId) -> &'a Message,
+    ) -> impl Iterator<Item = (MessageId, &'a str, &'a Path)> {
+        let set = self.set.iter().map(move |set| {
+            let message = message(set.message);
+            (set.message, message.field_name(&message[set.signal]), &set.path)
+        });
+        set.chain(self.also.iter().map(|also| (also.message, also.field.as_str(), &also.path)))
+    }
+}
+
 impl Protocol {
+    /// Returns the unit of a quantity. A switch has none.
+    pub fn unit_of(&self, known: &QuantityPaths) -> Option<Unit> {
+        match known.read.as_ref().or(known.set.as_ref()) {
+            Some(path) => self.unit_at(path),
+            None => self.setters(known).next()?.1.unit,
+        }
+    }
+
+    /// Returns the limit of the product on a quantity, if it has one.
+    pub fn limit_of(&self, known: &QuantityPaths) -> Option<&Limit> {
+        self.limits.iter().find(|limit| limit.quantity == known.name)
+    }
+
+    /// Returns the signals of requests that set a quantity, each with its message.
+    pub fn setters<'a>(&'a self, known: &'a QuantityPaths) -> impl Iterator<Item = (&'a Message, &'a Signal)> {
+        known.fields(|message| &self[message]).flat_map(|(message, field, _)| {
+            let content = self.whole(&self[message]);
+            content.signals_of(field).map(move |signal| (content, signal))
+        })
+    }
+
+    /// Returns the protocol without the limits of the product, as the document has it.
+    pub(crate) fn documented(&self) -> Cow<'_, Self> {
+        if self.limits.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut own = self.clone();
+        let long = own.long_messages.iter_mut().map(|long| &mut long.content);
+        let signals = own.messages.iter_mut().chain(long).flat_map(|message| message.signals.iter_mut());
+        signals.for_each(|signal| signal.limit = None);
+        own.limits.clear();
+        Cow::Owned(own)
+    }
+
     /// Returns the signal to which a path leads.
     pub fn signal_at(&self, path: &SignalPath) -> &Signal {
         &self[path.message][path.signal]

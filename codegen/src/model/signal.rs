@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use canspec_runtime::Place;
 
-use crate::model::{DeviceModel, Doc, Element, Encoding, Kind, ModelId, Table, Unit, only, place};
+use crate::model::{DeviceModel, Doc, Element, Encoding, Kind, Limit, ModelId, Table, Unit, only, place};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
@@ -179,6 +179,8 @@ pub struct Signal {
     pub default_path: Path,
     /// Physical limits of device models, if they have their own.
     pub model_ranges: Vec<OfModel<Range>>,
+    /// The limit of the product that requests keep to, if it has one for the signal's quantity.
+    pub limit: Option<Limit>,
     /// Raw values that device models start with, if they have their own.
     pub model_defaults: Vec<OfModel<i128>>,
     /// What a device does with the value.
@@ -277,13 +279,23 @@ impl Signal {
         own(&self.model_ranges, model).or(self.range)
     }
 
+    /// Returns the limits of a request to a device model: the range, as far as the limit of the product goes.
+    pub fn limits_for(&self, model: Option<ModelId>) -> Option<Range> {
+        self.narrowed(self.range_for(model))
+    }
+
     /// Returns the limits of a request to any of these device models. They are the hull of the
-    /// models' limits.
+    /// models' ranges, as far as the limit of the product goes.
     ///
-    /// A model without limits has those of the type. If the type has none either, the model does
+    /// A model without a range has that of the type. If the type has none either, the model does
     /// not widen the hull.
     pub fn hull(&self, models: impl Iterator<Item = ModelId>) -> Option<Range> {
-        models.filter_map(|model| self.range_for(Some(model))).reduce(Range::hull).or(self.range)
+        self.narrowed(models.filter_map(|model| self.range_for(Some(model))).reduce(Range::hull).or(self.range))
+    }
+
+    fn narrowed(&self, range: Option<Range>) -> Option<Range> {
+        let Some(limit) = &self.limit else { return range };
+        Some(range.map_or(limit.range, |range| range.shared(limit.range)))
     }
 
     /// Returns the raw value that a device model, or a device of an unknown model, starts with.
@@ -396,11 +408,16 @@ impl Signal {
 
     /// Tests whether no limit has a fraction.
     pub fn has_whole_limits(&self) -> bool {
-        let mut limits = self.ranges().flat_map(|(range, _)| [range.minimum, range.maximum]);
+        let mut limits = self.limits().flat_map(|(range, _)| [range.minimum, range.maximum]);
         limits.all(|limit| limit.to_integer().is_some())
     }
 
-    /// Returns all physical limits, each with its place in the spec.
+    /// Returns all limits of requests, each with its place in the spec: the ranges, and the limit of the product.
+    pub fn limits(&self) -> impl Iterator<Item = (Range, Path)> {
+        self.ranges().chain(self.limit.iter().map(|limit| (limit.range, limit.path.clone())))
+    }
+
+    /// Returns all ranges of the document, each with its place in the spec.
     pub fn ranges(&self) -> impl Iterator<Item = (Range, Path)> {
         let general = self.range.map(|range| (range, self.range_path.clone()));
         general.into_iter().chain(self.model_ranges.iter().map(|own| (own.value, own.path.clone())))
@@ -428,8 +445,13 @@ impl Range {
         (self.minimum..=self.maximum).contains(&Rational::integer(value))
     }
 
+    /// Returns what lies in both. Its end lies below its start if nothing does.
+    pub(crate) fn shared(self, other: Self) -> Self {
+        Self { minimum: self.minimum.max(other.minimum), maximum: self.maximum.min(other.maximum) }
+    }
+
     /// Returns the least range that holds both.
-    fn hull(self, other: Self) -> Self {
+    pub(crate) fn hull(self, other: Self) -> Self {
         Self { minimum: self.minimum.min(other.minimum), maximum: self.maximum.max(other.maximum) }
     }
 }

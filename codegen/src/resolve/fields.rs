@@ -360,6 +360,7 @@ impl Resolver<'_> {
             default: None,
             default_path,
             model_ranges: Vec::new(),
+            limit: None,
             model_defaults: Vec::new(),
             conduct: self.conduct(merged, Role::Packed),
             kinds,

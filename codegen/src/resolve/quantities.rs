@@ -1,9 +1,13 @@
 //! Resolves quantities: vendor-neutral names to signals.
 
+use indexmap::IndexSet;
+
 use super::Resolver;
 use crate::diagnostic::At;
 use crate::encoding::said;
-use crate::model::{Encoding, Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table};
+use crate::model::{
+    Encoding, FieldPath, Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table,
+};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
@@ -27,7 +31,8 @@ impl Resolver<'_> {
         messages: &Table<MessageId, Message>,
     ) -> QuantityPaths {
         self.check_name(path, name);
-        if written.read.is_none() && written.set.is_none() {
+        self.check_not_empty(path, &["also"]);
+        if written.read.is_none() && written.set.is_none() && written.also.is_empty() {
             let text = format!("`{name}` is neither read nor set");
             self.error_with_help(
                 &rules::QUANTITY_PATH,
@@ -46,7 +51,34 @@ impl Resolver<'_> {
             let help = "write `with` at `set`, or take it out";
             self.error_with_help(&rules::MISPLACED_KEY, path.key("read").key("with").at_key(), text, help);
         }
-        QuantityPaths { name: name.to_owned(), read, set, path: path.clone() }
+        let also = written.also.iter().enumerate();
+        let also = also.filter_map(|(index, text)| self.field_path(&path.key("also").index(index), text, messages));
+        QuantityPaths { name: name.to_owned(), read, set, also: also.collect(), path: path.clone() }
+    }
+
+    /// Reads the path to a field of a message, which can travel in several frames.
+    fn field_path(&mut self, path: &Path, written: &str, messages: &Table<MessageId, Message>) -> Option<FieldPath> {
+        let Some((name, field)) = written.split_once('.').filter(|(_, field)| !field.contains('.')) else {
+            let text = format!("`{written}` is no path to a field");
+            let help = "write the message and its field, as in `set_total.voltage`";
+            self.error_with_help(&rules::QUANTITY_PATH, path.at_value(), text, help);
+            return None;
+        };
+        let known = self.spec.messages.keys().map(String::as_str);
+        self.lookup(path, "message", name, known)?;
+        let message = messages.position(|known| known.name == name)?;
+        let long = messages[message].long.map(|long| self.tables.long_messages[long].content.clone());
+        let content = long.as_ref().unwrap_or(&messages[message]);
+        let given_up = self.tables.given_up.get(name).is_some_and(|names| names.contains(field));
+        if content.signals_of(field).next().is_none() {
+            let fields: IndexSet<_> = content.signals.iter().map(|signal| content.field_name(signal)).collect();
+            let fields: Vec<_> = fields.into_iter().collect();
+            if !given_up {
+                self.report_name(path.at_value(), "field", field, &fields, None);
+            }
+            return None;
+        }
+        Some(FieldPath { message, field: field.to_owned(), path: path.clone() })
     }
 
     fn signal_path(

@@ -28,6 +28,7 @@ rules! {
     MODEL_RANGE "model_range" Check EITHER;
     SET "set" Check ERROR;
     QUANTITY_PATH "quantity_path" Check ERROR;
+    PRODUCT_LIMIT "product_limit" Check EITHER;
     EXAMPLE "example" Check ERROR;
 }
 

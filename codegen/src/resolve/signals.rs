@@ -111,6 +111,7 @@ impl Resolver<'_> {
             has_absent,
             default_path: default_path.clone(),
             model_ranges: Vec::new(),
+            limit: None,
             model_defaults: Vec::new(),
             conduct,
             kinds,

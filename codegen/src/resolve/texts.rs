@@ -136,12 +136,7 @@ impl Resolver<'_> {
         if scaled.is_none() {
             let known = unit.map_or_else(String::new, |unit| unit.symbol.to_string());
             let message = format!("the limits `{text}` are not in {known}, the unit of the signal");
-            self.error_with_help(
-                &rules::RANGE,
-                path.at_value(),
-                message,
-                format!("write `{ends}` or `{ends} {known}`"),
-            );
+            self.error_with_help(&rules::RANGE, path.at_value(), message, format!("write `{ends} {known}`"));
         }
         scaled
     }

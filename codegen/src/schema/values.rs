@@ -44,7 +44,7 @@ enum Demand {
 
 /// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
 /// [`of_field`].
-const FORMS: [(&str, &str, Form); 15] = [
+const FORMS: [(&str, &str, Form); 16] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
@@ -54,6 +54,7 @@ const FORMS: [(&str, &str, Form); 15] = [
     ("Message", "match", NUMBER),
     ("Message", "send", NUMBER),
     ("Parts", "data", PLACE),
+    ("Product", "limits", RANGE),
     ("Reserved", "send", NUMBER),
     ("StatusBit", "bit", NUMBER),
     ("StatusBit", "byte", NUMBER),

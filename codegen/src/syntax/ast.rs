@@ -8,7 +8,7 @@ mod travel;
 
 pub use field::{Field, Key};
 pub use message::{Example, Means, Message, Parts, Sequence};
-pub use quantity::{Quantity, SignalPath, States};
+pub use quantity::{Product, Quantity, SignalPath, States};
 pub use travel::{Access, Foreign, Mode, Transport};
 
 use indexmap::IndexMap;
@@ -104,6 +104,9 @@ pub struct Spec {
     /// `{output_voltage: {read: output.voltage, set: set_output.voltage}}`; none if absent.
     #[serde(default)]
     pub quantities: Map<Quantity>,
+    /// What is true of the product in which the devices work, and not of the devices:
+    /// `{limits: {output_voltage: 150..450 V}}`; nothing if absent.
+    pub product: Option<Product>,
     /// Device models by name, and what is different for each:
     /// `{SM75030: {max_parallel: 60, types: {volts: {range: 50..750}}}}`; none if absent.
     #[serde(default)]

@@ -32,6 +32,11 @@ pub mod meter {
     canspec_runtime::include_protocol!("meter");
 }
 
+/// Supplies behind a fuse, as `specs/supply.yaml` describes them.
+pub mod supply {
+    canspec_runtime::include_protocol!("supply");
+}
+
 /// Batteries, as `specs/battery.yaml` describes them.
 pub mod battery {
     canspec_runtime::include_protocol!("battery");

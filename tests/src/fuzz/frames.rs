@@ -144,7 +144,7 @@ fn to_an_edge(case: &mut Case, random: &mut Rng) {
     let Some((message, signal)) = signal(case, random) else { return };
     let protocol = &case.engines().protocol;
     let place = signal.place;
-    let limits = signal.ranges().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
+    let limits = signal.limits().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
     let limits = limits.filter_map(|limit| raw_of(protocol, message, signal, &Input::Number(limit), Limits::Bits).ok());
     let half = 1 << (place.width() - 1);
     let edges: Vec<u64> = limits.chain([0, half, place.max()]).collect();

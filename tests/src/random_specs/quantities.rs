@@ -6,7 +6,7 @@ use serde_yaml::Value;
 
 use super::draft::Draft;
 use super::names::Scope;
-use super::yaml::Map;
+use super::yaml::{Map, list};
 
 impl Draft {
     /// Gives names to some signals of replies, reports and requests.
@@ -33,9 +33,37 @@ impl Draft {
                 self.set_quantities(protocol, message, frame, (&mut quantities, &mut scope));
             }
         }
+        let product = self.product(protocol, (&mut quantities, &mut scope));
         if let (false, Some(root)) = (quantities.is_empty(), root.as_mapping_mut()) {
             root.insert("quantities".into(), quantities.into());
+            root.extend(product.map(|product| ("product".into(), product)));
         }
+    }
+
+    /// Limits quantities of fields that requests carry and no other quantity sets.
+    fn product(&mut self, protocol: &Protocol, (quantities, scope): (&mut Map, &mut Scope)) -> Option<Value> {
+        let mut limits = Map::default();
+        let named = Value::from(quantities.clone());
+        let is_named = |path: &str| serde_yaml::to_string(&named).is_ok_and(|text| text.contains(path));
+        let messages = protocol
+            .messages
+            .iter()
+            .map(|message| (message, protocol.long_message(message).map_or(message, |(_, long)| &long.content)));
+        for (message, signal) in
+            messages.flat_map(|(message, whole)| whole.signals.iter().map(move |signal| (message, signal)))
+        {
+            let path = format!("{}.{}", message.name, signal.name);
+            let is_sent = protocol.layouts_of(message).any(|frame| {
+                let is_part = protocol.part_of(frame).is_some();
+                frame.is_to_module() && (is_part || protocol.signals_of(frame).any(|(_, own)| own.name == signal.name))
+            });
+            let range = limit(protocol, message, signal).filter(|_| is_sent && signal.element.is_none());
+            let Some(range) = range.filter(|_| !is_named(&path) && self.chance(50)) else { continue };
+            let name = self.names.plain(scope);
+            limits.put(name.clone(), range);
+            quantities.put(name, Map::of([("also", list([path]))]));
+        }
+        (!limits.is_empty()).then(|| Map::of([("limits", limits)]).into())
     }
 
     fn read_quantities(
@@ -103,6 +131,20 @@ impl Draft {
         let [active, inactive] = states;
         Some(Map::of([("signal", path), ("active", active), ("inactive", inactive)]).into())
     }
+}
+
+/// Returns limits of a number with a unit that leave values for every device model.
+fn limit(protocol: &Protocol, message: &Message, signal: &Signal) -> Option<String> {
+    let (unit, linear) = (signal.unit?, signal.encoding.linear()?);
+    if !signal.encoding.by_model().is_empty() {
+        return None;
+    }
+    let of_models = protocol.models_of(message).map(|model| signal.range_for(Some(model)));
+    let ranges = of_models.chain([signal.range]).map(|range| linear.integers(range.or_else(|| signal.held())?));
+    let ranges: Option<Vec<[i128; 2]>> = ranges.collect();
+    let [first, last] = ranges?.into_iter().reduce(|one, other| [one[0].max(other[0]), one[1].min(other[1])])?;
+    let (one, other) = (linear.value(first)?, linear.value(last)?);
+    (first <= last).then(|| format!("{}..{} {}", one.min(other), one.max(other), unit.symbol))
 }
 
 /// Returns the names of values that every device model has.

@@ -95,6 +95,9 @@ pub struct Quantity<'a> {
     unit: Option<String>,
     read: Option<Lead<'a>>,
     set: Option<Lead<'a>>,
+    also: Vec<String>,
+    minimum: Option<String>,
+    maximum: Option<String>,
 }
 
 /// The way to a signal.
@@ -115,9 +118,11 @@ struct Fixed<'a> {
 impl<'a> Quantity<'a> {
     pub fn of(protocol: &'a Protocol, known: &'a model::QuantityPaths) -> Self {
         let lead = |path: Option<&'a SignalPath>| path.map(|path| Lead::of(protocol, path));
-        let unit = known.read.as_ref().or(known.set.as_ref()).and_then(|path| protocol.unit_at(path));
-        let unit = unit.map(|unit| unit.symbol.to_string());
-        Self { name: &known.name, unit, read: lead(known.read.as_ref()), set: lead(known.set.as_ref()) }
+        let unit = protocol.unit_of(known).map(|unit| unit.symbol.to_string());
+        let also = known.also.iter().map(|also| format!("{}.{}", protocol[also.message].name, also.field)).collect();
+        let [minimum, maximum] = limits(protocol.limit_of(known).map(|limit| limit.range));
+        let [read, set] = [&known.read, &known.set].map(|path| lead(path.as_ref()));
+        Self { name: &known.name, unit, read, set, also, minimum, maximum }
     }
 }
 

@@ -25,7 +25,7 @@ impl Manual<'_> {
     pub fn text(&self) -> String {
         let sides = self.protocol.sides.sentence();
         let head = Comment::new([self.title(), self.documents()].into_iter().chain(sides).chain([SHARED.to_owned()]));
-        let parts = [section(head.lines()), self.example(), self.table(), self.timing()];
+        let parts = [section(head.lines()), self.example(), self.table(), self.timing(), self.limits()];
         let parts: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         parts.join("//!\n")
     }
@@ -48,6 +48,13 @@ impl Manual<'_> {
         let items = self.protocol.timing.iter().map(|timing| self.stated(timing));
         let list = doc::list(items);
         if list.is_empty() { list } else { section(Comment::new(["# Timing".to_owned(), list]).lines()) }
+    }
+
+    /// Lists the limits of the product.
+    fn limits(&self) -> String {
+        let items = self.protocol.limits.iter().map(|limit| format!("`{}`: {}.", limit.quantity, limit.text()));
+        let list = doc::list(items);
+        if list.is_empty() { list } else { section(Comment::new(["# Limits of the product".to_owned(), list]).lines()) }
     }
 
     fn stated(&self, timing: &Timing) -> String {

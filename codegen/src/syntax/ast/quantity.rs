@@ -16,6 +16,21 @@ pub struct Quantity {
     /// Message and signal of a request that sets the value: `set_output.voltage`. A switch also has its states:
     /// `{signal: switch.power, active: "on", inactive: "off"}`. If absent, nobody sets it.
     pub set: Option<SignalPath>,
+    /// List of other fields of requests that set it, as in a total or as a default: `[set_total.voltage]`; none if
+    /// absent.
+    #[serde(default)]
+    pub also: Vec<String>,
+}
+
+/// What is true of a product, and not of the devices in it.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Product {
+    /// Limits of quantities, each with its unit: `{output_voltage: 150..450 V}`. No request of any kind to any device
+    /// model passes them; none if absent.
+    #[serde(default)]
+    pub limits: Map<String>,
 }
 
 /// The path to a signal. It is a map if more must be said.

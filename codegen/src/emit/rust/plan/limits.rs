@@ -55,7 +55,7 @@ impl Limits {
 /// Tests whether limits can be raw values if scaled values are floating-point numbers. Without limits, any unscaled
 /// number passes.
 fn are_raw(signal: &Signal, precision: Precision) -> bool {
-    let is_free = signal.ranges().next().is_none();
+    let is_free = signal.limits().next().is_none();
     match signal.encoding {
         Encoding::Number { numeral, .. } => {
             signal.encoding.is_unscaled() && (is_free || numeral.is_raw() && signal.has_whole_limits())

@@ -31,7 +31,7 @@ struct Source {
 
 impl Source {
     fn new(protocol: &Protocol, signal: &Signal, form: limits::Limits) -> Self {
-        let range = |model| Some(form.range(signal, signal.range_for(Some(model))?));
+        let range = |model| Some(form.range(signal, signal.limits_for(Some(model))?));
         Self { ranges: protocol.models.ids().map(range).collect(), kind: form.kind(signal).to_string() }
     }
 }

@@ -76,7 +76,8 @@ impl Quantities {
         let known = &protocol.quantities;
         let reads = known.iter().filter_map(|known| Some(planner.read(&known.name, known.read.as_ref()?)));
         let sets = known.iter().filter_map(|known| planner.set(&known.name, known.set.as_ref()?));
-        (!known.is_empty()).then(|| Self { reads: reads.collect(), sets: sets.collect() })
+        let (reads, sets): (Vec<_>, Vec<_>) = (reads.collect(), sets.collect());
+        (!reads.is_empty() || !sets.is_empty()).then_some(Self { reads, sets })
     }
 }
 

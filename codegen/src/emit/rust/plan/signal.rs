@@ -393,7 +393,7 @@ fn models(protocol: &Protocol, signal: &model::Signal) -> String {
     if signal.model_ranges.is_empty() {
         return String::new();
     }
-    let unlimited = protocol.models.entries().filter(|(id, _)| signal.range_for(Some(*id)).is_none());
+    let unlimited = protocol.models.entries().filter(|(id, _)| signal.limits_for(Some(*id)).is_none());
     let names: Vec<_> = unlimited.map(|(_, model)| format!("`{}`", model.name)).collect();
     let none = if names.is_empty() { String::new() } else { format!(" These have none: {}.", names.join(", ")) };
     format!(" The limits depend on the device model.{none}")

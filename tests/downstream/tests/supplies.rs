@@ -1,0 +1,31 @@
+//! Limits of a product that is narrower than its devices.
+
+use winch_driver::supply::{Model, Quantities, Quantity, SetOutput, Target};
+
+#[test]
+fn no_model_takes_more_than_the_product() {
+    let output = |voltage_v| SetOutput { voltage_v, current_a: 10.0, fuse_a: 10 };
+    for (model, lowest) in [(Model::S50, 15.0), (Model::S80, 20.0), (Model::Sx, 15.0)] {
+        let takes = |voltage_v| output(voltage_v).within(model).is_ok();
+        assert_eq!([lowest - 0.1, lowest, 45.0, 45.1].map(takes), [false, true, true, false], "{}", model.name());
+    }
+    let takes = |voltage_v| output(voltage_v).set(Target::Supply).is_ok();
+    assert_eq!([14.9, 15.0, 45.0, 45.1].map(takes), [false, true, true, false]);
+    assert_eq!(SetOutput::VOLTAGE.limits_for(Model::Sx), Some((15.0, 45.0)));
+}
+
+#[test]
+fn a_number_without_a_range_keeps_to_the_limit_of_the_product() {
+    let takes = |current_a, fuse_a| SetOutput { voltage_v: 40.0, current_a, fuse_a }.set(Target::Supply).is_ok();
+    assert_eq!([takes(20.0, 30), takes(20.1, 30), takes(20.0, 31), takes(-0.1, 30)], [true, false, false, false]);
+    // 30.4 A go out as 30 A; 30.6 A lie outside.
+    let set = |fuse| {
+        let values = [
+            (Quantity::OUTPUT_VOLTAGE, 40_000),
+            (Quantity::OUTPUT_CURRENT, 10_000),
+            (Quantity::new("fuse_current"), fuse),
+        ];
+        winch_driver::supply::Message::set(&values, Target::Supply).is_ok()
+    };
+    assert_eq!([30_000, 30_400, 30_600].map(set), [true, true, false]);
+}
