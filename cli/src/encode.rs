@@ -233,7 +233,7 @@ impl Encoder {
             return Ok(Vec::new());
         }
         if let Some(missing) = &message.incomplete {
-            return Err(format!("an incomplete message is not made again: {missing}"));
+            return Err(format!("this message did not come whole, so it is not made again: {missing}"));
         }
         check_units(protocol.long_messages.iter().map(|long| &long.content), model, message)?;
         interpret::encode_long(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())

@@ -200,7 +200,7 @@ fn signals(lines: &mut Lines<'_>, item: &mut Vec<u8>, outcome: &Outcome<'_>) {
             }
             decoded.notes.iter().for_each(|note| remark(lines, note.rule.name(), &note.text));
             if let Some(text) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
-                remark(lines, "incomplete", text);
+                lines.add_sentence(&format!("! {text}"));
             }
         }
         Err(Unrecognised { problem, text, .. }) => {

@@ -118,7 +118,10 @@ fn an_incomplete_message_without_its_frames_is_refused() {
     let whole = all.lines().find(|line| line.contains("\"lines\"")).expect("it ends with the log");
     let (back, complaints) = canspec(&["encode", "--from", "jsonl"], whole);
     assert_eq!(back, "");
-    assert!(complaints.contains("an incomplete message is not made again: part 2 is missing"), "{complaints}");
+    assert!(
+        complaints.contains("this message did not come whole, so it is not made again: part 2 is missing"),
+        "{complaints}"
+    );
 }
 
 #[test]

@@ -109,6 +109,27 @@ fn a_text_that_lacks_a_part_is_absent() {
 }
 
 #[test]
+fn a_table_of_data_has_no_cell_that_a_spreadsheet_takes_for_a_formula() {
+    // The label is `=1+2`.
+    let log = "(1.0) =cmd 621#0000656E3D312B32\n(1.1) =cmd 221#0001202020202020\n";
+    let [csv, _] = canspec(&["decode", "--assemble", "--format", "csv", "-"], log);
+    let cells = "1.1,'=cmd,221,long_texts,label,report,report,motor 1,text,3D312B32202020202020,'=1+2,,,";
+    assert!(csv.contains(cells), "{csv}");
+}
+
+#[test]
+fn a_message_that_a_device_ends_early_is_not_whole() {
+    let whole = &wholes("211#0120214100000000")[0];
+    assert_eq!((&whole["data"], &whole["incomplete"]), (&json!(null), &json!("7 bytes came, but the message has 25")));
+    assert_eq!(whole["signals"], json!({"year": {"raw": 8225, "value": 2021}}));
+    let [table, _] = canspec(&["decode", "-"], "211#0120214100000000");
+    assert!(table.ends_with("! 7 bytes came, but the message has 25\n"), "{table}");
+    assert!(
+        encoded(std::slice::from_ref(whole))[1].ends_with("not made again: 7 bytes came, but the message has 25\n")
+    );
+}
+
+#[test]
 fn a_text_that_lacks_its_last_parts_is_absent_if_its_length_is_known() {
     let note = |log: &str| wholes_by("counted_text", log).swap_remove(0);
     assert_eq!(note(NOTE)["signals"]["text"]["value"], "Slow pump at dock 7");

@@ -192,18 +192,16 @@ impl Agreement {
                     self.incomplete += 1;
                     let missing: Vec<_> = partial.missing().map(|number| number.to_string()).collect();
                     assert!(first.is_some());
-                    match &message.incomplete {
-                        Some(text) => {
-                            let wrong = partial.announced().filter(|length| !long::<L>(protocol).has_length(*length));
-                            let said = wrong.map(|length| format!("{length} byte")).unwrap_or_default();
-                            assert_eq!(text.contains("announced"), wrong.is_some(), "{text}");
-                            assert!(text.split("; ").any(|part| part.starts_with(&said)), "{text}");
-                            assert!(text.contains(&missing.join(", ")), "{text}");
-                            assert!(!missing.is_empty() || wrong.is_some(), "{text}");
-                        }
-                        // The last part is marked before all fields came.
-                        None => assert!(missing.is_empty() && partial.data().len() < L::SHORTEST, "{outcome:?}"),
-                    }
+                    let text = message.incomplete.as_ref().unwrap_or_else(|| panic!("{message:?} and {outcome:?}"));
+                    let wrong = partial.announced().filter(|length| !long::<L>(protocol).has_length(*length));
+                    // The last part is marked before all fields came.
+                    let short = (missing.is_empty() && wrong.is_none()).then(|| partial.data().len());
+                    let said = wrong.or(short).map(|length| format!("{length} byte")).unwrap_or_default();
+                    assert_eq!(text.contains("announced"), wrong.is_some(), "{text}");
+                    assert_eq!(text.contains("came, but"), short.is_some(), "{text}");
+                    assert!(short.is_none_or(|length| length < L::SHORTEST), "{text}");
+                    assert!(text.split("; ").any(|part| part.starts_with(&said)), "{text}");
+                    assert!(text.contains(&missing.join(", ")), "{text}");
                 }
                 Outcome::Full(_) => panic!("there is room for all"),
             }

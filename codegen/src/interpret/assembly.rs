@@ -309,14 +309,12 @@ impl<M: Clone> Transfer<M> {
         (long, model): (&LongMessage, Option<ModelId>),
         (expected, count): (Option<usize>, Option<usize>),
     ) -> Assembled<M> {
+        let (joined, rest) = self.joined(long, count);
         let missing = self.missing(long, model, expected);
-        let wrong = self.announced.and_then(|length| Some((length, long.whole().other_lengths(length)?)));
-        let wrong = wrong.map(|(length, known)| format!("{} announced, but the message has {known}", in_bytes(length)));
-        let incomplete = match (missing, wrong) {
-            (Some(missing), Some(wrong)) => Some(format!("{missing}; {wrong}")),
+        let incomplete = match (missing, self.wrong_length(long, joined.data.len())) {
+            (Some(missing), Some(wrong)) if self.announced.is_some() => Some(format!("{missing}; {wrong}")),
             (missing, wrong) => missing.or(wrong),
         };
-        let (joined, rest) = self.joined(long, count);
         let note = filling_note(long, &rest).filter(|_| incomplete.is_none());
         let said = joined.read(protocol, long.whole(), model);
         let of_addresses = |note: &&Note| matches!(note.rule, NoteRule::Addressing | NoteRule::Address);
@@ -346,6 +344,18 @@ impl<M: Clone> Transfer<M> {
         let is_ended = self.is_ended || self.announced.is_some();
         let count = self.announced.map_or(count, |length| long.whole().elements_in(length));
         (Joined { data, came, count, is_ended }, rest)
+    }
+
+    /// Says that the message never has the announced number of bytes, or that it ended before its last field. `came` is
+    /// the number of bytes in its parts.
+    fn wrong_length(&self, long: &LongMessage, came: usize) -> Option<String> {
+        let (length, how) = match self.announced {
+            Some(length) => (length, "announced"),
+            None if came < long.least() => (came, "came"),
+            None => return None,
+        };
+        let known = long.whole().other_lengths(length)?;
+        Some(format!("{} {how}, but the message has {known}", in_bytes(length)))
     }
 
     /// Says which parts did not come.

@@ -41,6 +41,25 @@ fn what_fills_up_a_message_is_noted_only_if_it_is_whole() {
 }
 
 #[test]
+fn a_message_that_is_said_to_end_before_its_last_field_is_incomplete() {
+    // The maker's year, name and serial number are 25 bytes in four parts. Of the label, two bytes are always there.
+    let texts = feature("long_texts");
+    let came = |count: usize| format!("{count} bytes came, but the message has 25");
+    let [one, three] = [came(7), came(21)];
+    check(&texts, &["211#0120214100000000"], (vec![(vec![0], Some(&one))], vec![]));
+    let three_parts = ["611#01202141434D4520", "611#024D4F544F525320", "211#03FF000102030405"];
+    check(&texts, &three_parts, (vec![(vec![0, 1, 2], Some(&three))], vec![]));
+    let four_parts = [&three_parts[..2], &["611#03FF000102030405", "211#0406070809FFFFFF"]].concat();
+    check(&texts, &four_parts, (vec![(vec![0, 1, 2, 3], None)], vec![]));
+    // A part that is lost says enough.
+    let lost = Some("part 1 is missing");
+    check(&texts, &["211#024D4F544F525320"], (vec![(vec![0], lost)], vec![]));
+    check(&texts, &["221#0000656E50756D70"], (vec![(vec![0], None)], vec![]));
+    let (ended, _) = assembled(&texts, &["211#0120214100000000"]);
+    assert_eq!((ended[0].data.as_ref(), ended[0].decoded.signals.len()), (None, 1));
+}
+
+#[test]
 fn a_part_whose_number_is_not_greater_ends_the_message_before() {
     let again = "051#010300E8030A0000";
     let lost = Some("the parts 2, 3 are missing");

@@ -32,6 +32,11 @@ local function longest(long)
   return long.lengths and long.lengths[#long.lengths] or bytes_with(long)
 end
 
+-- Returns how many bytes reach to the end of the last field that is always there.
+local function least(long)
+  return long.lengths and long.lengths[1] or bytes_with(long, 0)
+end
+
 -- Returns the numbers of bytes that a long message can have, the least first.
 local function all_lengths(long, layout)
   local is_bare = #signals_of(long, layout) == 0

@@ -69,11 +69,17 @@ local function expected_parts(open, count)
   return parts_of(long, bytes_with(long, count))
 end
 
+-- Says that a message ended before its last field, or returns nil.
+local function too_short(long, came)
+  if came >= least(long) then return nil end
+  return string.format("%s came, but the message has %s", in_bytes(came), other_lengths(long, came))
+end
+
 -- Cuts joined data off where the first part says that they end. It returns what is wrong with that, too.
 local function cut(open, whole, lacking)
   local head = 2 * head_of(open.long.parts)
   whole.data = whole.data:sub(head + 1)
-  if not open.announced then return lacking end
+  if not open.announced then return lacking or too_short(open.long, math.floor(#whole.data / 2)) end
   whole.data = whole.data:sub(1, 2 * open.announced)
   whole.count, whole.is_counted, whole.is_ended = elements_in(open.long, open.announced), true, true
   local known = other_lengths(open.long, open.announced)
