@@ -332,3 +332,29 @@ fn what_fills_up_the_last_part_of_a_request_is_made_again_although_it_is_outside
         assert!(out.is_empty() && refused.contains("outside 20..300 °C"), "{out}{refused}");
     }
 }
+
+#[test]
+fn the_lines_of_a_message_whose_packets_came_again_are_in_their_order() {
+    // The second packet comes first. The receiver lets both come from the first one on.
+    let lines: Vec<_> = TRANSFER.lines().collect();
+    let log = [lines[0], lines[4], lines[1], "(1.6) can0 1CEB56F4#0141434D45A00F08"].join("\n");
+    let (out, _) = canspec_with(TRANSPORT, &["decode", "--assemble", "--format", "jsonl", "-"], &log);
+    let whole: Value = serde_json::from_str(out.lines().last().expect("a message")).expect("a line is an object");
+    assert_eq!((&whole["lines"], &whole["time"]), (&json!([1, 2, 4]), &json!(1.6)));
+}
+
+#[test]
+fn a_summary_counts_the_messages_that_came_whole_and_those_that_did_not() {
+    let cut = LOG.lines().take(3).collect::<Vec<_>>().join("\n");
+    let log = format!("{LOG}{cut}\n");
+    let (out, _) = canspec(&["decode", "--summary", "--assemble", "--format", "jsonl", "-"], &log);
+    let objects: Vec<Value> = out.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    let wholes: Vec<_> = objects.iter().filter(|object| object["summary"] == "whole").collect();
+    let [whole] = wholes.as_slice() else { panic!("one kind of message: {out}") };
+    assert_eq!((&whole["messages"], &whole["incomplete"]), (&json!(1), &json!(1)), "{whole}");
+    assert_eq!(objects[0]["frames"], 7, "they are no frames");
+    let (out, _) = canspec(&["decode", "--summary", "--format", "jsonl", "-"], &log);
+    assert!(!out.contains("whole"), "{out}");
+    let (out, _) = canspec(&["decode", "--summary", "-"], &log);
+    assert!(out.contains("LONG MESSAGE"), "{out}");
+}

@@ -76,9 +76,17 @@ fn a_packet_that_comes_again_counts_once_and_one_with_other_data_ends_the_messag
 fn a_late_packet_ends_the_message_unless_the_receiver_asks_for_it() {
     let late = "packet 1 is missing; packet 1 came after packet 2";
     check(&[ANNOUNCED, TWO, ONE], (vec![(vec![0, 1], Some(late))], vec![]));
-    check(&[ANNOUNCED, TWO, ALLOWED, ONE], (vec![(vec![0, 3, 1], None)], vec![]));
+    check(&[ANNOUNCED, TWO, ALLOWED, ONE], (vec![(vec![0, 1, 3], None)], vec![]));
     check(&[ANNOUNCED, ONE, AGAIN, TWO, DONE], (vec![(vec![0, 1, 3], None)], vec![]));
     check(&[TO_ALL[0], TO_ALL[2]], (vec![(vec![0, 1], Some("packet 1 is missing"))], vec![]));
+}
+
+#[test]
+fn the_frames_of_a_message_stand_in_the_order_in_which_they_came() {
+    // The first packet comes once more after the second one, and is the one that counts.
+    check(&[ANNOUNCED, ONE, AGAIN, ALLOWED, ONE, TWO, DONE], (vec![(vec![0, 4, 5], None)], vec![]));
+    check(&[ANNOUNCED, TWO, ALLOWED, TWO, ONE, DONE], (vec![(vec![0, 3, 4], None)], vec![]));
+    check(&[ANNOUNCED, TWO, ALLOWED, ONE, DONE], (vec![(vec![0, 1, 3], None)], vec![]));
 }
 
 #[test]

@@ -30,7 +30,9 @@ struct Transfer<M> {
     ends: Ends,
     started: Started,
     announcement: M,
-    packets: Vec<Option<(Vec<u8>, M)>>,
+    packets: Vec<Option<Vec<u8>>>,
+    /// How many packets stand before each one that is kept, and its frame, in the order in which they came.
+    marks: Vec<(usize, M)>,
     /// The packet from which the receiver lets them come once more.
     again: Option<usize>,
     /// Whether the message ended. Only the receiver has something to say then.
@@ -89,6 +91,7 @@ impl<M: Clone> Transfers<M> {
             started,
             announcement: mark,
             packets: vec![None; if is_right { packets } else { 0 }],
+            marks: Vec::new(),
             again: None,
             is_done: false,
         };
@@ -112,7 +115,7 @@ impl<M: Clone> Transfers<M> {
         let is_again = transfer.again.is_some_and(|first| index >= first);
         let why = match &transfer.packets[index] {
             _ if is_again => None,
-            Some((known, _)) if *known == data => return Taken { is_part: true, ended: Vec::new() },
+            Some(known) if *known == data => return Taken { is_part: true, ended: Vec::new() },
             Some(_) => Some(format!("packet {number} came twice, with other data")),
             None => {
                 let later = transfer.packets.iter().skip(index).position(Option::is_some);
@@ -122,7 +125,9 @@ impl<M: Clone> Transfers<M> {
         if let Some(why) = why {
             return Taken { is_part: true, ended: self.end(part, open, &why).into_iter().collect() };
         }
-        transfer.packets[index] = Some((data, mark));
+        transfer.packets[index] = Some(data);
+        transfer.marks.retain(|(known, _)| *known != index);
+        transfer.marks.push((index, mark));
         let is_last = transfer.ends.1 == Groups::EVERYBODY && number == transfer.packets.len();
         let is_whole = transfer.packets.iter().all(Option::is_some);
         if !is_whole && !is_last {
@@ -209,7 +214,7 @@ impl<M: Clone> Transfer<M> {
         let incomplete = self.missing(&protocol[self.started.long], why);
         let (mut data, mut came) = (Vec::new(), Vec::new());
         for packet in &self.packets {
-            data.extend(packet.as_ref().map_or(&[0; Groups::PACKET][..], |(data, _)| data));
+            data.extend(packet.as_ref().map_or(&[0; Groups::PACKET][..], Vec::as_slice));
             came.extend([packet.is_some(); Groups::PACKET]);
         }
         let is_filled = data.iter().skip(self.started.size).all(|byte| *byte == 0xFF);
@@ -217,7 +222,7 @@ impl<M: Clone> Transfer<M> {
             let text = "bytes behind the end of the message are not all 0xFF".to_owned();
             Note { rule: NoteRule::ReservedBit, text }
         });
-        let marks = self.packets.into_iter().flatten().map(|(_, mark)| mark);
+        let marks = self.marks.into_iter().map(|(_, mark)| mark);
         let marks = std::iter::once(self.announcement).chain(marks).collect();
         Arrived { started: self.started, data, came, marks, incomplete, note }.assembled(protocol, model)
     }
