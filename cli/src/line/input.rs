@@ -8,8 +8,8 @@ use canspec_codegen::model::Kind;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::Value;
 use serde_json::value::RawValue;
-use serde_json::{Number, Value};
 
 use super::Members;
 use crate::log;
@@ -215,8 +215,9 @@ fn channel(name: &str) -> Result<String, String> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SignalObject {
-    raw: Option<Value>,
-    value: Option<Value>,
+    /// As they are written, so that no digit is lost.
+    raw: Option<Box<RawValue>>,
+    value: Option<Box<RawValue>>,
     unit: Option<String>,
     set: Option<Value>,
     unknown: Option<Value>,
@@ -227,17 +228,21 @@ struct SignalObject {
 impl SignalObject {
     /// Returns the elements of an array, whose members are lists.
     fn elements(&self) -> Option<Vec<Self>> {
-        let lists = [&self.raw, &self.value, &self.set, &self.unknown].map(|member| member.as_ref()?.as_array());
-        let [raw, value, mut set, unknown] = lists;
+        let [raw, value] = [&self.raw, &self.value].map(|member| list(member.as_deref()?));
+        let [mut set, unknown] = [&self.set, &self.unknown].map(|member| member.as_ref()?.as_array());
         // The names of the set bits are a list in any case.
         if unknown.is_none() {
             set = None;
         }
-        let count = [raw, value, set, unknown].into_iter().flatten().map(Vec::len).max()?;
+        let written = [&raw, &value].map(|list| list.as_ref().map(Vec::len));
+        let count = written.into_iter().chain([set, unknown].map(|list| list.map(Vec::len))).flatten().max()?;
         let item = |list: Option<&Vec<Value>>, index: usize| list?.get(index).filter(|item| !item.is_null()).cloned();
+        let text = |list: &Option<Vec<Box<RawValue>>>, index: usize| {
+            list.as_ref()?.get(index).filter(|item| item.get() != "null").cloned()
+        };
         let element = |index| Self {
-            raw: item(raw, index),
-            value: item(value, index),
+            raw: text(&raw, index),
+            value: text(&value, index),
             unit: None,
             set: item(set, index),
             unknown: item(unknown, index),
@@ -254,8 +259,7 @@ impl SignalObject {
 
     fn input(self) -> Result<Input, String> {
         match (self.value, self.set, self.unknown) {
-            (Some(Value::String(text)), None, None) => with_bytes(text, self.raw.as_ref()),
-            (Some(value), None, None) => physical(value),
+            (Some(value), None, None) => physical(&value, self.raw.as_deref()),
             (None, Some(set), Some(unknown)) => status(set, unknown),
             (None, None, None) => raw(&self.raw.ok_or("`value` is missing, and so is `raw`")?),
             (Some(_), ..) => Err("it has a `value` and the bits of a status word".to_owned()),
@@ -272,21 +276,24 @@ fn status(set: Value, unknown: Value) -> Result<Input, String> {
     Ok(Input::Status { set, unknown })
 }
 
-fn physical(value: Value) -> Result<Input, String> {
-    match value {
-        Value::Number(number) => whole(&number).map(Input::Integer).or_else(|| number.as_f64().map(Input::Number)),
-        Value::String(text) => Some(Input::Text(text)),
-        other @ (Value::Null | Value::Bool(_) | Value::Array(_) | Value::Object(_)) => {
-            return Err(format!("`value` is a number, a text or null, not {other}"));
-        }
+/// Reads a number, a name or a text. `raw` is what stands beside it.
+fn physical(value: &RawValue, raw: Option<&RawValue>) -> Result<Input, String> {
+    if let Some(text) = string(value) {
+        return with_bytes(text, raw);
     }
-    .ok_or_else(|| "`value` is no number of 64 bits".to_owned())
+    if !log::is_number(value) {
+        return Err(format!("`value` is a number, a text or null, not {value}"));
+    }
+    // A zero has a sign as a double alone.
+    let whole = whole(value).filter(|number| *number != 0 || value.get() == "0").map(Input::Integer);
+    let double = || value.get().parse().ok().filter(|number: &f64| number.is_finite()).map(Input::Number);
+    whole.or_else(double).ok_or_else(|| "`value` is no number of 64 bits".to_owned())
 }
 
 /// Returns a name or a text. Digits beside a text say which bytes fill it up.
-fn with_bytes(text: String, raw: Option<&Value>) -> Result<Input, String> {
-    match raw.and_then(Value::as_str) {
-        Some(digits) => Ok(Input::Bytes { bytes: long_bytes(digits)?, text: Some(text) }),
+fn with_bytes(text: String, raw: Option<&RawValue>) -> Result<Input, String> {
+    match raw.and_then(string) {
+        Some(digits) => Ok(Input::Bytes { bytes: long_bytes(&digits)?, text: Some(text) }),
         None => Ok(Input::Text(text)),
     }
 }
@@ -297,16 +304,26 @@ fn long_bytes(digits: &str) -> Result<Vec<u8>, String> {
     })
 }
 
-fn raw(value: &Value) -> Result<Input, String> {
-    if let Some(digits) = value.as_str() {
-        return Ok(Input::Bytes { bytes: long_bytes(digits)?, text: None });
+fn raw(value: &RawValue) -> Result<Input, String> {
+    if let Some(digits) = string(value) {
+        return Ok(Input::Bytes { bytes: long_bytes(&digits)?, text: None });
     }
-    let number = value.as_number().and_then(whole);
-    number.map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
+    whole(value).map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
 }
 
-fn whole(number: &Number) -> Option<i128> {
-    number.as_u64().map(i128::from).or_else(|| number.as_i64().map(i128::from))
+/// Returns a number that is written without a point and without an exponent, if it lies within 64 bits and a sign.
+fn whole(value: &RawValue) -> Option<i128> {
+    value.get().parse().ok().filter(|number: &i128| number.unsigned_abs() <= u64::MAX.into())
+}
+
+/// Returns the text that a JSON text stands for.
+fn string(value: &RawValue) -> Option<String> {
+    serde_json::from_str(value.get()).ok()
+}
+
+/// Returns the items of a JSON list.
+fn list(value: &RawValue) -> Option<Vec<Box<RawValue>>> {
+    serde_json::from_str(value.get()).ok()
 }
 
 /// A struct that only a JSON object gives a value. serde would take a list as well.

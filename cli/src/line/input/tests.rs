@@ -92,6 +92,20 @@ fn an_integer_is_not_a_floating_point_number() {
     assert_eq!(input(r#"{"value":2.0}"#), Ok(Input::Number(2.0)));
     assert_eq!(input(r#"{"value":18446744073709551615}"#), Ok(Input::Integer(u64::MAX.into())));
     assert_eq!(input(r#"{"value":"on"}"#), Ok(Input::Text("on".to_owned())));
+    // A double has a zero below zero.
+    assert_eq!(input(r#"{"value":0}"#), Ok(Input::Integer(0)));
+    assert!(matches!(input(r#"{"value":-0}"#), Ok(Input::Number(zero)) if zero.is_sign_negative()));
+}
+
+#[test]
+fn an_integer_that_no_double_has_is_not_rounded() {
+    let just_beyond = i128::from(i64::MIN) - 1;
+    assert_eq!(input(&format!(r#"{{"value":{just_beyond}}}"#)), Ok(Input::Integer(just_beyond)));
+    assert_eq!(input(&format!(r#"{{"raw":{just_beyond}}}"#)), Ok(Input::Raw(just_beyond)));
+    assert_eq!(input(r#"{"value":18446744073709551616}"#), Ok(Input::Number(2_f64.powi(64))));
+    let why = "signal `s`: `raw` is an integer of up to 64 bits, not 18446744073709551616";
+    assert_eq!(input(r#"{"raw":18446744073709551616}"#), Err(why.to_owned()));
+    assert_eq!(input(r#"{"value":1e400}"#), Err("signal `s`: `value` is no number of 64 bits".to_owned()));
 }
 
 #[test]
