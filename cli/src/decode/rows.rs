@@ -1,5 +1,7 @@
 //! A row of CSV a signal, as programs for tables of data want it.
 
+use std::borrow::Cow;
+
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
 use crate::line::{Outcome, all_selectors, bit_names, selected};
@@ -32,7 +34,7 @@ impl Rows {
             }
         };
         let line = outcome.line.to_string();
-        let (time, channel) = (outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default());
+        let (time, channel) = (outcome.time.unwrap_or_default(), &neutral(outcome.channel.unwrap_or_default()));
         let of_whole = outcome.whole.as_ref().map(|whole| whole.data.unwrap_or_default());
         let data = log::hexadecimal(of_whole.unwrap_or(&outcome.frame.data));
         let id = log::identifier_text(outcome.frame);
@@ -76,7 +78,7 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::Integer(number) => number.to_string(),
         Value::Number(number) => format!("{number:?}"),
         Value::Name(name) => name.clone(),
-        Value::Text(text) => escape::written(text),
+        Value::Text(text) => neutral(&escape::written(text)).into_owned(),
         Value::Status { set, .. } => bit_names(outcome.protocol, signal, *set).collect::<Vec<_>>().join(" "),
     };
     let unit = signal.unit.map_or_else(String::new, |unit| unit.symbol.to_string());
@@ -94,6 +96,12 @@ fn notes(outcome: &Outcome<'_>, notes: &[Note]) -> String {
     texts.collect::<Vec<_>>().join("; ")
 }
 
+/// Begins a text with an apostrophe if a spreadsheet could take it for a formula. One that begins with an apostrophe gets
+/// another, so that both can be told apart.
+fn neutral(text: &str) -> Cow<'_, str> {
+    if text.starts_with(['=', '+', '-', '@', '\'']) { Cow::Owned(format!("'{text}")) } else { Cow::Borrowed(text) }
+}
+
 /// Puts what could be taken for the end of a cell into quotes, by RFC 4180.
 fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
@@ -101,7 +109,22 @@ fn quoted(cell: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::{neutral, quoted};
+
+    #[test]
+    fn a_text_that_looks_like_a_formula_begins_with_an_apostrophe() {
+        for (text, expected) in [
+            ("=1+2", "'=1+2"),
+            ("+49", "'+49"),
+            ("-5", "'-5"),
+            ("@SUM", "'@SUM"),
+            ("'a", "''a"),
+            ("a=b", "a=b"),
+            ("", ""),
+        ] {
+            assert_eq!(neutral(text), expected);
+        }
+    }
 
     #[test]
     fn a_cell_is_quoted_where_it_could_end_too_early() {
