@@ -25,15 +25,39 @@ pub struct Interruptible {
 pub fn stdin() -> io::Result<Interruptible> {
     // One chunk at a time waits, so that a fast bus needs no more room.
     let (sender, chunks) = sync_channel(1);
-    let (end, was_pressed) = (sender.clone(), AtomicBool::new(false));
+    let key = Key { end: sender.clone(), was_pressed: AtomicBool::new(false) };
     ctrlc::set_handler(move || {
-        if was_pressed.swap(true, Ordering::Relaxed) || end.send(Ok(Vec::new())).is_err() {
+        if key.press() == Pressed::Again {
             process::exit(INTERRUPTED);
         }
     })
     .map_err(io::Error::other)?;
     thread::spawn(move || forward(io::stdin(), &sender));
     Ok(Interruptible { chunks, chunk: Cursor::default(), is_over: false })
+}
+
+/// The keys Ctrl-C.
+struct Key {
+    end: SyncSender<io::Result<Vec<u8>>>,
+    was_pressed: AtomicBool,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Pressed {
+    First,
+    Again,
+}
+
+impl Key {
+    /// Ends the input by the first press. If the input has just ended by itself, what is known is shown already, so the
+    /// press changes nothing.
+    fn press(&self) -> Pressed {
+        if self.was_pressed.swap(true, Ordering::Relaxed) {
+            return Pressed::Again;
+        }
+        let _ = self.end.send(Ok(Vec::new()));
+        Pressed::First
+    }
 }
 
 /// Sends whole lines, and what follows the last one when its end is known. Nobody receives them after Ctrl-C.
@@ -67,5 +91,18 @@ impl Read for Interruptible {
             count = self.chunk.read(room)?;
         }
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_press_behind_the_end_of_the_input_leaves_time_to_show_what_is_known() {
+        let (end, chunks) = sync_channel(1);
+        let key = Key { end, was_pressed: AtomicBool::new(false) };
+        drop(chunks);
+        assert_eq!([key.press(), key.press()], [Pressed::First, Pressed::Again]);
     }
 }

@@ -35,6 +35,28 @@ fn a_summary_shows_the_whole_lines_so_far() {
 }
 
 #[test]
+fn the_counts_are_shown_if_the_input_ends_at_the_same_time() {
+    for _ in 0..30 {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
+        let command = command.args(["decode", "--protocol", "infy", "--summary"]).stdin(Stdio::piped());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
+        let mut stdin = child.stdin.take().expect("standard input is a pipe");
+        stdin.write_all(LINES.as_bytes()).expect("the command reads");
+        let mut stderr = BufReader::new(child.stderr.take().expect("standard error is a pipe"));
+        stderr.read_line(&mut String::new()).expect("the command complains");
+        let number = child.id().to_string();
+        let kill = Command::new("kill").args(["-s", "INT", &number]).spawn();
+        drop(stdin);
+        let mut shown = String::new();
+        child.stdout.as_mut().expect("a pipe").read_to_string(&mut shown).expect("the output is UTF-8");
+        assert_eq!(child.wait().expect("it was started").code(), Some(1), "the third line is unreadable");
+        assert!(kill.and_then(|mut kill| kill.wait()).is_ok(), "every Unix has it");
+        // The end of the input ends its last line, too.
+        assert!(shown.contains(" frames, 2 recognised, "), "{shown}");
+    }
+}
+
+#[test]
 fn identify_shows_the_protocols_so_far() {
     let (status, shown) = interrupted(&["identify", "--format", "jsonl", "-"]);
     assert_eq!(status, Some(1), "the third line is unreadable");
