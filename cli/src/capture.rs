@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map;
 use std::fs::{self, File};
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use canspec_codegen::interpret::{Form, Frame};
@@ -30,38 +30,112 @@ const ERROR: u32 = 1 << 29;
 /// The flag of an FD frame. The flags of the log come in addition.
 const FD: u8 = 4;
 
-/// Makes the file of a capture, in place of one that canspec wrote or that is empty.
-///
-/// # Errors
-///
-/// Where the file cannot be written, or is none of canspec's.
-pub fn create(path: &Path) -> io::Result<File> {
-    if !fs::metadata(path).is_ok_and(|known| known.is_file()) {
-        return File::options().write(true).create(true).truncate(false).open(path);
-    }
-    let mut file = File::options().read(true).write(true).open(path)?;
-    let head = section()?;
-    let mut found = Vec::new();
-    (&file).take(head.len() as u64).read_to_end(&mut found)?;
-    if !found.is_empty() && found != head {
-        let why = "the file is no capture of canspec, so it is kept; name another one after `--to pcapng`";
-        return Err(io::Error::new(io::ErrorKind::AlreadyExists, why));
-    }
-    file.set_len(0)?;
-    file.rewind()?;
-    Ok(file)
+/// The file of a capture. Its first block has a seal of the rest. Other programs keep that block when they change the
+/// file, and then the seal does not match.
+pub struct Sealed {
+    file: File,
+    seal: Seal,
+    /// A device or a pipe has none.
+    has_seal: bool,
 }
 
-/// Returns the block with which each capture of canspec begins.
-fn section() -> io::Result<Vec<u8>> {
+/// A number that follows from bytes: their hash by FNV-1a, of 64 bits.
+#[derive(Clone, Copy)]
+struct Seal(u64);
+
+impl Seal {
+    const OF_NOTHING: Self = Self(0xCBF2_9CE4_8422_2325);
+
+    fn add(&mut self, bytes: &[u8]) {
+        const PRIME: u64 = 0x0100_0000_01B3;
+        self.0 = bytes.iter().fold(self.0, |seal, byte| (seal ^ u64::from(*byte)).wrapping_mul(PRIME));
+    }
+}
+
+impl Sealed {
+    /// Makes the file of a capture with its first block, in place of one that canspec wrote last, or that is empty. With `is_forced` it takes
+    /// the place of any file.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be written, or is to be kept.
+    pub fn create(path: &Path, is_forced: bool) -> io::Result<Self> {
+        let has_seal = fs::metadata(path).map_or(true, |known| known.is_file());
+        let mut file = File::options().read(has_seal).write(true).create(true).truncate(false).open(path)?;
+        if has_seal {
+            if !is_forced && !is_own(&file)? {
+                let why = "the file is no capture that canspec wrote last, so it is kept; name another one after \
+                           `--to pcapng`, or add `--force`";
+                return Err(io::Error::new(io::ErrorKind::AlreadyExists, why));
+            }
+            file.set_len(0)?;
+            file.rewind()?;
+        }
+        let mut sealed = Self { file, seal: Seal::OF_NOTHING, has_seal };
+        let section = sealed.section()?;
+        sealed.file.write_all(&section)?;
+        Ok(sealed)
+    }
+
+    /// Returns the first block of a capture in it.
+    fn section(&self) -> io::Result<Vec<u8>> {
+        section(self.has_seal.then_some(self.seal))
+    }
+}
+
+impl Write for Sealed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        self.seal.add(&bytes[..count]);
+        Ok(count)
+    }
+
+    /// Seals what is written. So a capture that is stopped has its seal.
+    fn flush(&mut self) -> io::Result<()> {
+        if self.has_seal {
+            let section = self.section()?;
+            self.file.rewind()?;
+            self.file.write_all(&section)?;
+            self.file.seek(SeekFrom::End(0))?;
+        }
+        self.file.flush()
+    }
+}
+
+/// Tests whether a file is empty, or as canspec wrote it.
+fn is_own(file: &File) -> io::Result<bool> {
+    let mut reader = BufReader::new(file);
+    let mut first = vec![0; section(Some(Seal::OF_NOTHING))?.len()];
+    if reader.fill_buf()?.is_empty() {
+        return Ok(true);
+    }
+    if let Err(error) = reader.read_exact(&mut first) {
+        return if error.kind() == io::ErrorKind::UnexpectedEof { Ok(false) } else { Err(error) };
+    }
+    let mut seal = Seal::OF_NOTHING;
+    loop {
+        let bytes = reader.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(first == section(Some(seal))?);
+        }
+        seal.add(bytes);
+        let count = bytes.len();
+        reader.consume(count);
+    }
+}
+
+/// Returns the first block of a capture. It names canspec, and has the seal of the bytes behind it if there is one.
+fn section(seal: Option<Seal>) -> io::Result<Vec<u8>> {
     let length_unknown = u64::MAX.to_le_bytes();
     let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
+    let application = seal.map_or_else(|| "canspec".to_owned(), |Seal(seal)| format!("canspec, seal {seal:016X}"));
     let mut bytes = Vec::new();
-    block(&mut bytes, SECTION, &[head.concat(), option(APPLICATION, b"canspec"), vec![0; 4]].concat())?;
+    block(&mut bytes, SECTION, &[head.concat(), option(APPLICATION, application.as_bytes()), vec![0; 4]].concat())?;
     Ok(bytes)
 }
 
 /// A capture that is being written; each channel of the log is an interface.
+#[derive(Default)]
 pub struct Capture {
     /// Numbers of the interfaces.
     channels: HashMap<Option<String>, u32>,
@@ -74,9 +148,9 @@ impl Capture {
     ///
     /// Where `out` cannot be written.
     pub fn begin(out: &mut impl Write) -> io::Result<Self> {
-        out.write_all(&section()?)?;
+        out.write_all(&section(None)?)?;
         out.flush()?;
-        Ok(Self { channels: HashMap::new() })
+        Ok(Self::default())
     }
 
     /// Writes a frame. Without a stamp its time is 0. Digits after the nanoseconds are cut off.
@@ -188,7 +262,7 @@ mod tests {
             let entry = reader.read(line).expect("a readable line").expect("a frame");
             capture.frame(&mut bytes, &entry).expect("a time").expect("a vector takes everything");
         }
-        let mut rest = &bytes[section().expect("a vector takes everything").len()..];
+        let mut rest = &bytes[section(None).expect("a vector takes everything").len()..];
         let mut blocks = Vec::new();
         while let Some(length) = rest.get(4..8) {
             let (block, after) = rest.split_at(u32::from_le_bytes(length.try_into().expect("four bytes")) as usize);
@@ -221,6 +295,36 @@ mod tests {
         let mut bytes = Vec::new();
         Capture::begin(&mut bytes).expect("a vector takes everything");
         assert_eq!(log::hexadecimal(&bytes).to_lowercase(), head.replace(' ', ""));
+    }
+
+    #[test]
+    fn a_seal_is_the_hash_of_the_bytes_however_they_are_parted() {
+        // Test vectors of FNV-1a from draft-eastlake-fnv.
+        for (text, hash) in
+            [("", 0xCBF2_9CE4_8422_2325), ("a", 0xAF63_DC4C_8601_EC8C), ("foobar", 0x8594_4171_F739_67E8)]
+        {
+            let [mut whole, mut parted] = [Seal::OF_NOTHING; 2];
+            whole.add(text.as_bytes());
+            text.as_bytes().chunks(2).for_each(|chunk| parted.add(chunk));
+            assert_eq!((whole.0, parted.0), (hash, hash), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_capture_that_is_stopped_behind_a_flush_is_sealed() {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        let path = folder.path().join("capture");
+        let is_own = || is_own(&File::open(&path).expect("it is there")).expect("it can be read");
+        let mut sealed = Sealed::create(&path, false).expect("the folder can be written");
+        let mut seen = vec![is_own()];
+        for _ in 0..2 {
+            sealed.write_all(b"some block").expect("it can be written");
+            seen.push(is_own());
+            sealed.flush().expect("it can be written");
+            seen.push(is_own());
+        }
+        assert_eq!(seen, [true, false, true, false, true]);
+        assert!(fs::read(&path).expect("it is there").ends_with(b"some blocksome block"));
     }
 
     #[test]

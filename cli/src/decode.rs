@@ -13,7 +13,7 @@ use canspec_codegen::interpret::{Assembled, Decoded, Frame, Taken, Unrecognised}
 use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
-use crate::capture::{self, Capture};
+use crate::capture::{Capture, Sealed};
 use crate::channels::{Channels, Others};
 use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
@@ -56,11 +56,21 @@ pub struct Decode {
     /// Counts and rates in place of the frames.
     #[arg(long, conflicts_with = "to")]
     summary: bool,
+    #[command(flatten)]
+    capture: ToCapture,
+    /// The log; standard input without one, or for `-`.
+    file: Option<PathBuf>,
+}
+
+/// The capture to write.
+#[derive(Args)]
+struct ToCapture {
     /// Write the frames, as they are, to a capture for Wireshark; FORMAT is `pcapng`, OUT a file or `-`.
     #[arg(long, num_args = 2, value_names = ["FORMAT", "OUT"], conflicts_with_all = ["protocol", "spec", "name", "format"])]
     to: Vec<String>,
-    /// The log; standard input without one, or for `-`.
-    file: Option<PathBuf>,
+    /// Write the capture over any file, also one that others wrote or changed.
+    #[arg(long, requires = "to")]
+    force: bool,
 }
 
 const EXAMPLES: &str = "Examples:
@@ -145,7 +155,7 @@ enum Printer {
 impl Decode {
     /// Writes each frame of the log as the chosen protocols understand it.
     pub fn run(&self) -> Result<Finish, Failure> {
-        match self.to.as_slice() {
+        match self.capture.to.as_slice() {
             [format, out] if format == "pcapng" => self.capture(Path::new(out)),
             [format, ..] => Err(Failure::Call(format!("unknown format `{format}`; a capture is written as `pcapng`"))),
             [] => self.print(),
@@ -155,21 +165,23 @@ impl Decode {
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
         let log = Input::open(self.file.as_deref())?.summed_up();
         if path == Path::new("-") {
-            return self.write_capture(log, BufWriter::new(output()?));
+            let mut out = BufWriter::new(output()?);
+            let capture = Capture::begin(&mut out)?;
+            return self.write_capture(log, out, capture);
         }
         let failure = |error: io::Error| Failure::input(path, &error);
         if log.is_at(path) {
             let why = format!("{} is the log itself; name another file for the capture", shown(path));
             return Err(Failure::Call(why));
         }
-        let finish = self.write_capture(log, BufWriter::new(capture::create(path).map_err(failure)?));
+        let out = BufWriter::new(Sealed::create(path, self.capture.force).map_err(failure)?);
+        let finish = self.write_capture(log, out, Capture::default());
         finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
     }
 
-    fn write_capture(&self, log: Input, mut out: impl Write) -> Result<Finish, Failure> {
-        let mut capture = Capture::begin(&mut out)?;
+    fn write_capture(&self, log: Input, mut out: impl Write, mut capture: Capture) -> Result<Finish, Failure> {
         let (mut reader, mut counts) = (Reader::default(), Counts::default());
-        let finish = log.each(out, |out, line| {
+        let finish = log.each(&mut out, |out, line| {
             let entry = reader.read(line.text?)?.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
             counts.frames += u64::from(entry.is_some());
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))

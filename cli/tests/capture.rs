@@ -67,24 +67,43 @@ fn a_capture_never_replaces_its_own_log() {
 }
 
 #[test]
-fn a_file_that_is_no_capture_of_canspec_is_never_replaced() {
+fn a_file_that_canspec_did_not_write_last_is_replaced_only_by_force() {
     let folder = folder_with_log();
     let path = folder.path().join("bus.pcapng");
     assert!(convert(&folder, &["bus.pcapng", "bus.log"]).status.success());
     let ours = fs::read(&path).expect("the capture is there");
     // Another program's name in the first block; a block that is cut off; the notes of somebody.
     let other = ours.iter().map(|byte| if *byte == b'c' { b'C' } else { *byte }).collect();
-    for theirs in [other, ours[..20].to_vec(), b"my notes\n".to_vec()] {
+    // As editcap and tshark leave it, which keep the first block: without its last frame, with that frame once more, with
+    // another time. The last one has a comment.
+    let last = &ours[ours.len() - 40..];
+    let mut moved = ours.clone();
+    moved[ours.len() - 24] ^= 1;
+    let comment = [&last[..36], b"\x01\0\x04\0mine\0\0\0\0", &52_u32.to_le_bytes()].concat();
+    let comment = [&comment[..4], &52_u32.to_le_bytes(), &comment[8..]].concat();
+    let rest = &ours[..ours.len() - 40];
+    let changed = [rest.to_vec(), [&ours[..], last].concat(), moved, [rest, &comment].concat()];
+    for theirs in [other, ours[..20].to_vec(), b"my notes\n".to_vec()].into_iter().chain(changed) {
         fs::write(&path, &theirs).expect("the folder can be written");
         let output = convert(&folder, &["bus.pcapng", "bus.log"]);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(
-            said.contains("bus.pcapng: the file is no capture of canspec, so it is kept; name another one"),
+            said.contains(
+                "bus.pcapng: the file is no capture that canspec wrote last, so it is kept; name another one"
+            ),
             "{said}"
         );
         assert_eq!(fs::read(&path).expect("the file is there"), theirs);
+        assert!(convert(&folder, &["bus.pcapng", "bus.log", "--force"]).status.success());
+        assert_eq!(fs::read(&path).expect("the file is there"), ours);
     }
+}
+
+#[test]
+fn force_does_not_let_a_capture_replace_its_own_log() {
+    let folder = folder_with_log();
+    assert_refused(&folder, &convert(&folder, &["bus.log", "bus.log", "--force"]));
 }
 
 #[test]
@@ -157,7 +176,10 @@ fn a_dash_is_standard_output() {
     assert!(convert(&folder, &["out", "bus.log"]).status.success());
     let output = convert(&folder, &["-", "bus.log"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(output.stdout, fs::read(folder.path().join("out")).expect("the capture is there"));
+    let file = fs::read(folder.path().join("out")).expect("the capture is there");
+    // Only a file has a seal in its first block.
+    let blocks = |bytes: &[u8]| bytes[usize::from(bytes[4])..].to_vec();
+    assert_eq!(blocks(&output.stdout), blocks(&file));
     assert!(!folder.path().join("-").exists());
 }
 
