@@ -19,7 +19,7 @@ use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
 use crate::kept::Kept;
 use crate::line::{self, Outcome, Whole};
-use crate::log::{Entry, Reader};
+use crate::log::{Asides, Entry, Reader};
 use crate::model::{Device, Model};
 use crate::output::output;
 use crate::protocols::{self, Several};
@@ -47,8 +47,8 @@ pub struct Decode {
     /// A table, a JSON object for each frame, or a row of CSV for each signal.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Add messages that are longer than a frame, put together; the table shows them in any case.
-    #[arg(long, conflicts_with_all = ["summary", "to"])]
+    /// Add messages that are longer than a frame, put together; tables show them in any case.
+    #[arg(long, conflicts_with = "to")]
     assemble: bool,
     /// Show the frames of such messages in the table, too.
     #[arg(long, conflicts_with_all = ["summary", "to"])]
@@ -197,7 +197,7 @@ impl Decode {
         let models = self.model.find(&protocols, &settings)?;
         self.choice.check(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
-        let is_table = matches!(self.format, Format::Text) && !self.summary;
+        let is_table = matches!(self.format, Format::Text);
         let assemblies = (self.assemble || is_table).then(Assemblies::default);
         let state = State { reader: Reader::default(), assemblies, printer: self.printer(&protocols)? };
         let mut work = Work { state, counts: Counts::default(), kept: Kept::default() };
@@ -220,7 +220,7 @@ impl Decode {
             self.show_whole(printer, &mut text, protocol, channel.as_deref(), whole);
             out.write_all(&text)?;
         }
-        state.printer.end(&mut out)?;
+        state.printer.end(state.reader.asides(), &mut out)?;
         out.flush()?;
         self.suggest(&counts, finish);
         if counts.frames > 0 && counts.recognised == 0 {
@@ -249,7 +249,7 @@ impl Decode {
             (Some(assemblies), Ok(decoded)) => assemblies.take(device, line.number, &entry, decoded),
             _ => Taken { is_part: false, ended: Vec::new() },
         };
-        let is_hidden = taken.is_part && matches!(self.format, Format::Text) && !self.frames;
+        let is_hidden = taken.is_part && matches!(self.format, Format::Text) && !self.frames && !self.summary;
         if !is_hidden {
             let printer = (&mut state.printer, &mut *kept);
             self.show(printer, out, line.number, &entry, (device.0, &mut decoded));
@@ -358,12 +358,12 @@ impl Printer {
     }
 
     /// Writes what comes after the last frame.
-    fn end(&mut self, out: &mut impl Write) -> io::Result<()> {
+    fn end(&mut self, asides: Asides, out: &mut impl Write) -> io::Result<()> {
         match self {
             Self::Text(_) | Self::Jsonl => Ok(()),
             Self::Csv(rows) => out.write_all(rows.begin().as_bytes()),
-            Self::Summary { counts, jsonl: true } => counts.write_jsonl(out),
-            Self::Summary { counts, jsonl: false } => counts.write_text(out),
+            Self::Summary { counts, jsonl: true } => counts.write_jsonl(asides, out),
+            Self::Summary { counts, jsonl: false } => counts.write_text(asides, out),
         }
     }
 }

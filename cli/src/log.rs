@@ -28,7 +28,20 @@ pub struct Entry<'a> {
 
 /// What is known of a log after the lines read so far.
 #[derive(Clone, Default)]
-pub struct Reader(Option<Format>);
+pub struct Reader {
+    format: Option<Format>,
+    asides: Asides,
+}
+
+/// What the lines so far say that is of no format.
+#[derive(Clone, Copy, Default, Debug, PartialEq, Eq)]
+pub struct Asides {
+    /// Lines that begin with `#`.
+    pub comments: u64,
+    /// Lines by which candump says that frames were lost, and how many these were.
+    pub drops: u64,
+    pub dropped: u64,
+}
 
 /// How lines look, and what the head of the log says of those below.
 #[derive(Clone)]
@@ -51,7 +64,7 @@ impl Reader {
     /// Says why the line is unreadable.
     pub fn read<'a>(&'a mut self, line: &'a str) -> Result<Option<Entry<'a>>, String> {
         // Most lines of most logs; no other format has lines that can be read so.
-        if let Some(Format::Compact) = self.0
+        if let Some(Format::Compact) = self.format
             && let Some(entry) = compact::usual(line)
         {
             return Ok(Some(entry));
@@ -59,8 +72,10 @@ impl Reader {
         if line.trim_ascii().is_empty() {
             return Ok(None);
         }
-        self.tell(line);
-        match &mut self.0 {
+        if !self.tell(line) && self.asides.take(line) {
+            return Ok(None);
+        }
+        match &mut self.format {
             Some(Format::Compact) => compact::read(line),
             Some(Format::Plain) => plain::read(line),
             Some(Format::Slcan) => slcan::read(line),
@@ -77,23 +92,43 @@ impl Reader {
     pub fn is_like(&self, other: &Self) -> bool {
         use Format::{Compact, Plain, Slcan};
         matches!(
-            (&self.0, &other.0),
+            (&self.format, &other.format),
             (Some(Compact), Some(Compact)) | (Some(Plain), Some(Plain)) | (Some(Slcan), Some(Slcan))
         )
     }
 
-    /// Finds out the format of a line. A line that shows none has the format so far.
-    fn tell(&mut self, line: &str) {
-        let told = match &self.0 {
+    /// Returns what was said aside.
+    pub fn asides(&self) -> Asides {
+        self.asides
+    }
+
+    /// Finds out the format of a line, and tells whether it shows one. A line that shows none has the format so far.
+    fn tell(&mut self, line: &str) -> bool {
+        let told = match &self.format {
             Some(Format::Asc(_) | Format::Csv(_) | Format::Trc(_)) => None,
             Some(Format::Compact | Format::Plain | Format::Slcan | Format::Incomplete(_)) => {
                 frame(line).or_else(|| head(line))
             }
             None => head(line).or_else(|| frame(line)).or_else(|| uncertain(line)),
         };
-        if told.is_some() {
-            self.0 = told;
+        let is_told = told.is_some();
+        self.format = told.or_else(|| self.format.take());
+        is_told
+    }
+}
+
+impl Asides {
+    /// Counts a line that no format has: a comment, or what candump says of lost frames.
+    fn take(&mut self, line: &str) -> bool {
+        let line = line.trim_ascii_start();
+        if let Some(drop) = line.strip_prefix("DROPCOUNT:") {
+            self.drops += 1;
+            self.dropped += drop.split_ascii_whitespace().find_map(|word| word.parse::<u64>().ok()).unwrap_or(0);
+            return true;
         }
+        let is_comment = line.starts_with('#');
+        self.comments += u64::from(is_comment);
+        is_comment
     }
 }
 
@@ -108,13 +143,15 @@ fn head(line: &str) -> Option<Format> {
 /// Returns the format of a first line that has less than it should.
 fn uncertain(line: &str) -> Option<Format> {
     let stamped = compact::has_stamp(line).then_some(Format::Compact);
-    let complaint = || csv::Columns::lack(line).or_else(|| csv::Columns::aligned(line));
+    let lack = || csv::Columns::lack(line).or_else(|| csv::Columns::aligned(line));
+    let complaint = || if line.trim_ascii_start().starts_with('#') { None } else { lack() };
     stamped.or_else(|| complaint().map(|why| Format::Incomplete(Some(why))))
 }
 
 /// Returns the format that has frames in such a line.
 fn frame(line: &str) -> Option<Format> {
     match line.bytes().find(|byte| matches!(byte, b'#' | b'[')) {
+        Some(b'#') if line.trim_ascii_start().starts_with('#') => None,
         Some(b'#') => Some(Format::Compact),
         Some(_) if plain::shows(line) => Some(Format::Plain),
         Some(_) if line.contains('#') => Some(Format::Compact),
@@ -177,6 +214,30 @@ mod tests {
         assert!(reader.read("time,id,value").expect_err("there are no data").contains("no column for the data"));
         assert!(reader.read("0.5,123,7").is_ok_and(|entry| entry.is_none()));
         assert!(reader.read("(1.5) can0 123#1122").is_ok_and(|entry| entry.is_some()));
+    }
+
+    #[test]
+    fn comments_and_lost_frames_are_counted_in_logs_of_every_format() {
+        // As candump prints it.
+        let dropped = "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)";
+        let logs: [&[&str]; 6] = [
+            &["(1.5) can0 123#1122"],
+            &["  can0  123   [2]  11 22"],
+            &["t12321122"],
+            &["base hex  timestamps absolute", "0.5 1  123  Rx   d 2 11 22"],
+            &["time,id,data", "0.5,123,1122"],
+            &[";$FILEVERSION=1.1", "  1)  0.5  Rx  0123  2  11 22"],
+        ];
+        for log in logs {
+            let mut reader = Reader::default();
+            let mut frames = 0;
+            let aside = ["# a comment", " #another [1]", dropped];
+            for line in aside.iter().chain(log).chain(&aside).chain(&log[log.len() - 1..]) {
+                frames += usize::from(reader.read(line).expect("the line is readable").is_some());
+            }
+            assert_eq!(frames, 2, "{log:?}");
+            assert_eq!(reader.asides(), Asides { comments: 4, drops: 2, dropped: 10 }, "{log:?}");
+        }
     }
 
     #[test]

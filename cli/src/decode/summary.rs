@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::columns::{self, Row};
-use crate::line::Outcome;
-use crate::log;
+use crate::line::{Outcome, Whole};
+use crate::log::{self, Asides};
 
 /// Counts of a log so far.
 #[derive(Clone, Default)]
@@ -20,10 +20,19 @@ pub struct Summary {
     span: Option<Span>,
     /// By protocol, message, access and kind.
     messages: BTreeMap<[String; 4], u64>,
+    /// Messages that several frames carry, in the same way.
+    wholes: BTreeMap<[String; 4], Wholes>,
     /// By rule.
     notes: BTreeMap<&'static str, Seen>,
     /// By identifier and problem.
     unrecognised: BTreeMap<(String, &'static str), (Seen, Reasons)>,
+}
+
+/// How many messages came whole, and how many did not.
+#[derive(Clone, Copy, Default)]
+struct Wholes {
+    whole: u64,
+    incomplete: u64,
 }
 
 /// The first reasons, each once: by them registers with one identifier can be told apart.
@@ -78,10 +87,26 @@ enum Object<'a> {
         frames: u64,
         rate: Option<f64>,
     },
+    Whole {
+        protocol: &'a str,
+        message: &'a str,
+        access: &'a str,
+        kind: &'a str,
+        messages: u64,
+        incomplete: u64,
+        rate: Option<f64>,
+    },
     Note {
         rule: &'a str,
         frames: u64,
         line: usize,
+    },
+    Dropped {
+        frames: u64,
+        lines: u64,
+    },
+    Comments {
+        lines: u64,
     },
     Unrecognised {
         id: &'a str,
@@ -93,8 +118,11 @@ enum Object<'a> {
 }
 
 impl Summary {
-    /// Counts a frame.
+    /// Counts a frame, or a message that several frames carry.
     pub fn count(&mut self, outcome: &Outcome<'_>) {
+        if let (Some(whole), Ok(decoded)) = (&outcome.whole, outcome.decoded) {
+            return self.count_whole(outcome, decoded, whole);
+        }
         self.frames += 1;
         self.see(outcome.time);
         match outcome.decoded {
@@ -110,11 +138,19 @@ impl Summary {
     }
 
     fn recognise(&mut self, outcome: &Outcome<'_>, decoded: &Decoded) {
-        let protocol = outcome.protocol;
-        let (message, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
-        let key = [&protocol.name, message, access, decoded.kind.name()].map(str::to_owned);
         self.recognised += 1;
-        *self.messages.entry(key).or_default() += 1;
+        *self.messages.entry(names(outcome, decoded)).or_default() += 1;
+        self.note(outcome, decoded);
+    }
+
+    fn count_whole(&mut self, outcome: &Outcome<'_>, decoded: &Decoded, whole: &Whole<'_>) {
+        let known = self.wholes.entry(names(outcome, decoded)).or_default();
+        *(if whole.incomplete.is_none() { &mut known.whole } else { &mut known.incomplete }) += 1;
+        self.note(outcome, decoded);
+    }
+
+    /// Counts the rules of notes, each once.
+    fn note(&mut self, outcome: &Outcome<'_>, decoded: &Decoded) {
         let mut rules: Vec<_> = decoded.notes.iter().map(|note| note.rule.name()).collect();
         rules.sort_unstable();
         rules.dedup();
@@ -167,7 +203,7 @@ impl Summary {
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn write_jsonl(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_jsonl(&self, asides: Asides, out: &mut impl Write) -> io::Result<()> {
         let span = self.span.as_ref();
         let first = span.and_then(|span| serde_json::from_str(&span.first.1).ok());
         let last = span.and_then(|span| serde_json::from_str(&span.last.1).ok());
@@ -181,12 +217,20 @@ impl Summary {
             frames,
             rate: self.rate(frames),
         });
+        let wholes = self.wholes.iter().map(|([protocol, message, access, kind], Wholes { whole, incomplete })| {
+            let (messages, incomplete) = (*whole, *incomplete);
+            Object::Whole { protocol, message, access, kind, messages, incomplete, rate: self.rate(messages) }
+        });
         let notes =
             self.notes.iter().map(|(rule, Seen { frames, line })| Object::Note { rule, frames: *frames, line: *line });
         let unrecognised = self.unrecognised().into_iter().map(|(id, problem, Seen { frames, line }, reasons)| {
             Object::Unrecognised { id, problem, frames: *frames, line: *line, reasons: &reasons.texts }
         });
-        for object in [log].into_iter().chain(messages).chain(notes).chain(unrecognised) {
+        let Asides { comments, drops, dropped } = asides;
+        let dropped = (drops > 0).then_some(Object::Dropped { frames: dropped, lines: drops });
+        let comments = (comments > 0).then_some(Object::Comments { lines: comments });
+        let counts = messages.chain(wholes).chain(notes).chain(unrecognised);
+        for object in [log].into_iter().chain(counts).chain(dropped).chain(comments) {
             serde_json::to_writer(&mut *out, &object)?;
             writeln!(out)?;
         }
@@ -198,14 +242,23 @@ impl Summary {
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn write_text(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_text(&self, asides: Asides, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{}", self.headline())?;
+        for line in spoken(asides) {
+            writeln!(out, "{line}")?;
+        }
         let row = |cells: Vec<String>, last: String| Row { cells, last: vec![last], separator: "", ..Row::default() };
         let messages = self.messages().into_iter().map(|([protocol, message, access, kind], frames)| {
             let names = [protocol, message, access, kind].map(String::clone);
             row([&names[..], &[frames.to_string()]].concat(), rounded(self.rate(frames)))
         });
         table(out, &["PROTOCOL", "MESSAGE", "ACCESS", "KIND", "FRAMES"], "A SECOND", &messages.collect::<Vec<_>>())?;
+        let wholes = self.wholes.iter().map(|(names, Wholes { whole, incomplete })| {
+            let counts = [whole, incomplete].map(u64::to_string);
+            row([&names[..], &counts].concat(), rounded(self.rate(*whole)))
+        });
+        let headings = ["PROTOCOL", "LONG MESSAGE", "ACCESS", "KIND", "WHOLE", "INCOMPLETE"];
+        table(out, &headings, "WHOLE A SECOND", &wholes.collect::<Vec<_>>())?;
         let notes = self.notes.iter();
         let notes =
             notes.map(|(rule, seen)| row(vec![(*rule).to_owned(), seen.frames.to_string()], seen.line.to_string()));
@@ -231,6 +284,21 @@ impl Summary {
             _ => count,
         }
     }
+}
+
+/// Returns protocol, message, access and kind.
+fn names(outcome: &Outcome<'_>, decoded: &Decoded) -> [String; 4] {
+    let protocol = outcome.protocol;
+    let (message, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
+    [&protocol.name, message, access, decoded.kind.name()].map(str::to_owned)
+}
+
+/// Says which lines were no frames.
+fn spoken(Asides { comments, drops, dropped }: Asides) -> impl Iterator<Item = String> {
+    let counted = |count: u64, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+    let lost =
+        (drops > 0).then(|| format!("{} lost by candump, in {}", counted(dropped, "frame"), counted(drops, "line")));
+    lost.into_iter().chain((comments > 0).then(|| counted(comments, "comment")))
 }
 
 /// Shows a rate, which a log without stamps does not have.
