@@ -163,7 +163,7 @@ impl Decode {
     }
 
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
-        let log = Input::open(self.file.as_deref())?.summed_up();
+        let log = Input::open_log(self.file.as_deref())?.summed_up();
         if path == Path::new("-") {
             let mut out = BufWriter::new(output()?);
             let capture = Capture::begin(&mut out)?;
@@ -202,8 +202,11 @@ impl Decode {
         let state = State { reader: Reader::default(), assemblies, printer: self.printer(&protocols)? };
         let mut work = Work { state, counts: Counts::default(), kept: Kept::default() };
         let mut out = BufWriter::with_capacity(BUFFER, output()?);
-        let open = if self.summary { Input::open_whole } else { Input::open };
-        let input = open(self.file.as_deref())?;
+        let open = if self.summary { Input::open_whole } else { Input::open_log };
+        let mut input = open(self.file.as_deref())?;
+        if let Printer::Text(table) = &mut work.state.printer {
+            input.foresee(|entry| table.expect(entry.time.as_deref(), entry.channel))?;
+        }
         let finish = if input.has_parts() && !self.summary {
             ahead::decode(input, &mut out, &mut work, |work, out, line| self.line(&devices, work, out, line))?
         } else {

@@ -7,8 +7,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::doubt::Doubt;
 use crate::failure::{Failure, Finish, escaped, shown, tell};
 use crate::interrupt;
+use crate::log::{Entry, Reader};
 use crate::progress::Progress;
 use crate::signature;
 
@@ -50,6 +52,8 @@ pub struct Input {
     line: Vec<u8>,
     /// How many bytes there are, where that is known.
     length: Option<u64>,
+    /// Whether it is a log; `None` if nothing says that it should be one.
+    doubt: Option<Doubt>,
     /// The output comes when all is read.
     is_summed_up: bool,
     /// What somebody at a terminal sees.
@@ -122,13 +126,22 @@ impl Input {
         }
     }
 
+    /// Opens a log.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be opened.
+    pub fn open_log(path: Option<&Path>) -> Result<Self, Failure> {
+        Ok(Self { doubt: Some(Doubt::default()), ..Self::open(path)? })
+    }
+
     /// Opens a log that is shown when all is read. Ctrl-C ends standard input, as its end does.
     ///
     /// # Errors
     ///
     /// Where the file cannot be opened.
     pub fn open_whole(path: Option<&Path>) -> Result<Self, Failure> {
-        let input = Self::open(path)?.summed_up();
+        let input = Self::open_log(path)?.summed_up();
         if path.is_some_and(|path| path != Path::new("-")) {
             return Ok(input);
         }
@@ -144,7 +157,8 @@ impl Input {
     fn new(name: &Path, reader: Box<dyn Read>) -> Self {
         let reader = BufReader::with_capacity(LONGEST, reader);
         let (name, line) = (name.to_owned(), Vec::new());
-        Self { name, file: None, reader, number: 0, line, length: None, is_summed_up: false, progress: None }
+        let (file, length, doubt, progress) = (None, None, None, None);
+        Self { name, file, reader, number: 0, line, length, doubt, is_summed_up: false, progress }
     }
 
     /// Says that nothing is written before all is read.
@@ -162,7 +176,30 @@ impl Input {
         self.line.clear();
         let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
         self.number += 1;
-        Ok(more.then(|| Line::new(self.number, &self.line)))
+        let line = more.then(|| Line::new(self.number, &self.line));
+        if let (Some(doubt), Some(line)) = (&mut self.doubt, &line) {
+            doubt
+                .look(line.text.as_ref().copied().map_err(String::as_str))
+                .map_err(|why| Failure::input(&self.name, &why))?;
+        }
+        Ok(line)
+    }
+
+    /// Calls back with each frame in the lines that have come, before the first one is read.
+    ///
+    /// # Errors
+    ///
+    /// Where the input cannot be read, or is no log.
+    pub fn foresee(&mut self, mut see: impl FnMut(&Entry<'_>)) -> Result<(), Failure> {
+        self.refuse_foreign()?;
+        let mut reader = Reader::default();
+        for line in lines(self.reader.buffer()).map(|place| &self.reader.buffer()[place]) {
+            let text = str::from_utf8(line).ok().filter(|line| line.ends_with('\n'));
+            if let Some(Ok(Some(entry))) = text.map(|line| reader.read(line)) {
+                see(&entry);
+            }
+        }
+        Ok(())
     }
 
     /// Refuses a file that has no lines, before the first one is read.
@@ -171,7 +208,9 @@ impl Input {
             return Ok(());
         }
         let start = self.reader.fill_buf().map_err(|error| Failure::input(&self.name, &error))?;
-        signature::foreign(start).map_or(Ok(()), |why| Err(Failure::input(&self.name, &why)))
+        let known = signature::foreign(start).map_or(Ok(()), Err);
+        let foreseen = known.and_then(|()| self.doubt.as_ref().map_or(Ok(()), |doubt| doubt.foresee(start)));
+        foreseen.map_err(|why| Failure::input(&self.name, &why))
     }
 
     /// Reads up to the end of a line, and drops what is too much of it.

@@ -12,6 +12,7 @@ mod columns;
 mod compile;
 mod completions;
 mod decode;
+mod doubt;
 mod encode;
 mod examples;
 mod export;

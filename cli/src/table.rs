@@ -43,6 +43,17 @@ impl Table {
         table
     }
 
+    /// Keeps to the width of a terminal, if there is one.
+    #[must_use]
+    pub fn within(self, terminal: Option<usize>) -> Self {
+        Self { columns: self.columns.within(terminal), ..self }
+    }
+
+    /// Makes room for the stamp and the channel of a frame that will come.
+    pub fn expect(&mut self, time: Option<&str>, channel: Option<&str>) {
+        self.columns.widen(&[time.unwrap_or_default(), channel.unwrap_or_default()]);
+    }
+
     fn make_room(&mut self, protocol: &Protocol) {
         for mode in &protocol.modes {
             self.columns.widen(&["", "", "", &widest_address(protocol, mode)]);

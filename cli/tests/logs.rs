@@ -1,6 +1,7 @@
 //! Logs of other programs: whichever program wrote a log, its frames are the same.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -130,8 +131,10 @@ fn a_log_of_no_known_format_is_answered_with_the_known_ones() {
     let told = String::from_utf8(output.stderr).expect("it is text");
     assert_eq!(output.status.code(), Some(1));
     let first = told.lines().next().unwrap_or_default();
-    let start = "../logs.rs:1: `//! Logs of other programs: whichever pr...` is of no known log; known are candump (";
+    let start = "canspec: ../logs.rs: 100 lines cannot be read, and no frame comes before them; the first: \
+                 `//! Logs of other programs: whichever pr...` is of no known log; known are candump (";
     assert!(first.starts_with(start), "{first}");
+    assert_eq!(told.lines().count(), 1, "{told}");
     for name in ["SLCAN", "Vector ASC", "TRC", "CSV"] {
         assert!(first.contains(name), "{name} in {first}");
     }
@@ -140,7 +143,9 @@ fn a_log_of_no_known_format_is_answered_with_the_known_ones() {
 #[test]
 fn a_file_without_lines_is_refused_once_with_what_makes_lines_of_it() {
     // From RFC 1952, RFC 8878, the format of xz, APPNOTE 6.3, python-can, ASAM MDF, draft-ietf-opsawg-pcap and -pcapng.
-    let kinds: [(&[u8], &str, &str); 11] = [
+    let kinds: [(&[u8], &str, &str); 13] = [
+        (b"SQLite format 3\0", "SQLite", "can_logconvert"),
+        (b"***BUSMASTER Ver 3.2.2***", "BUSMASTER", "SavvyCAN"),
         (b"\x1f\x8b\x08", "gzip", "zcat"),
         (b"\x28\xb5\x2f\xfd", "zstd", "zstdcat"),
         (b"\xfd7zXZ\x00", "xz", "xzcat"),
@@ -175,4 +180,102 @@ fn a_file_without_lines_is_refused_once_with_what_makes_lines_of_it() {
             }
         }
     }
+}
+
+/// Calls canspec with a text on standard input, and returns its status, output and complaints.
+fn canspec_of(arguments: &[&str], input: &str) -> (Option<i32>, String, String) {
+    let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    let canspec = canspec.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = canspec.spawn().expect("the command starts");
+    let mut stdin = child.stdin.take().expect("standard input is a pipe");
+    // What refuses the input does not read all of it.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    let output = child.wait_with_output().expect("the command ends");
+    let [out, told] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
+    (output.status.code(), out, told)
+}
+
+#[test]
+fn what_is_no_log_is_refused_once_however_long_it_is() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let crtd = "1542473901.020305 1R29 0283F000 43 FA 00 00 40 60 00 00\n";
+    for (line, name) in [("hello\n", "100 lines cannot be read"), (crtd, "the file is a log in CRTD; SavvyCAN")] {
+        let text = line.repeat(300_000);
+        let path = folder.path().join("bus.log");
+        fs::write(&path, &text).expect("the folder can be written");
+        let file = path.to_string_lossy();
+        let calls: [&[&str]; 4] = [
+            &["decode", "--protocol", "infy"],
+            &["decode", "--protocol", "infy", "--summary"],
+            &["decode", "--to", "pcapng", "/dev/null"],
+            &["identify"],
+        ];
+        for call in calls {
+            let output = canspec(&[call, &[&file]].concat());
+            let of_file = (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned());
+            let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+            let (status, out, told) = canspec_of(&[call, &["-"]].concat(), &text);
+            for (status, out, told) in [(of_file.0, of_file.1, complaint), (status, out, told)] {
+                assert_eq!((status, told.lines().count(), out.as_str()), (Some(1), 1, ""), "{call:?}: {told}");
+                assert!(told.contains(name), "{told}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_unreadable_line_of_a_log_is_reported() {
+    let log = format!("{}(1.0) can0 0283F000#43FA000040600000\n{}", "hello\n".repeat(99), "hello\n".repeat(1000));
+    let (status, out, told) = canspec_of(&["decode", "--protocol", "infy", "--format", "jsonl", "-"], &log);
+    assert_eq!((status, out.lines().count(), told.lines().count()), (Some(1), 1, 1099));
+}
+
+#[test]
+fn a_live_log_shows_each_line_as_it_comes() {
+    let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    let canspec = canspec.args(["decode", "--protocol", "infy", "--format", "jsonl"]).stdin(Stdio::piped());
+    let mut child = canspec.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
+    let mut stdin = child.stdin.take().expect("standard input is a pipe");
+    let mut stdout = BufReader::new(child.stdout.take().expect("standard output is a pipe"));
+    let mut stderr = BufReader::new(child.stderr.take().expect("standard error is a pipe"));
+    // Whatever is read has been written while the input is open.
+    for number in [1, 3, 5] {
+        let mut line = String::new();
+        stdin.write_all(b"hello\n").expect("the command reads");
+        stderr.read_line(&mut line).expect("it is text");
+        assert!(line.starts_with(&format!("<stdin>:{number}: ")), "{line}");
+        line.clear();
+        stdin.write_all(b"(1.0) can0 0283F000#43FA000040600000\n").expect("the command reads");
+        stdout.read_line(&mut line).expect("it is text");
+        assert!(line.starts_with(&format!("{{\"line\":{},", number + 1)), "{line}");
+    }
+    drop(stdin);
+    assert_eq!(child.wait().expect("the command ends").code(), Some(1));
+}
+
+#[test]
+fn comments_and_lost_frames_are_no_errors_and_a_summary_counts_them() {
+    // As candump prints lost frames.
+    let dropped = "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)";
+    let log = format!("# a comment\n{dropped}\n(1.0) can0 0283F000#43FA000040600000\n{dropped}\n#another\n");
+    let (status, out, told) = canspec_of(&["decode", "--protocol", "infy", "--format", "jsonl", "-"], &log);
+    assert_eq!((status, out.lines().count(), told.as_str()), (Some(0), 1, ""));
+    let summary = ["decode", "--protocol", "infy", "--summary", "-"];
+    let (status, out, told) = canspec_of(&[&summary[..], &["--format", "jsonl"]].concat(), &log);
+    assert_eq!((status, told.as_str()), (Some(0), ""));
+    let counts = ["{\"summary\":\"dropped\",\"frames\":10,\"lines\":2}", "{\"summary\":\"comments\",\"lines\":2}"];
+    assert_eq!(out.lines().skip(2).collect::<Vec<_>>(), counts, "{out}");
+    let (_, out, _) = canspec_of(&summary, &log);
+    assert!(out.contains("\n10 frames lost by candump, in 2 lines\n2 comments\n"), "{out}");
+}
+
+#[test]
+fn rows_stand_below_one_another_however_wide_their_stamps_and_channels_are() {
+    let frame = "0283F000#43FA000040600000";
+    let log =
+        format!("(1.5) a {frame}\n(123456.25) can0 {frame}\n(7) a_longer_channel {frame}\n(8.123456) a {frame}\n");
+    let (_, table, _) = canspec_of(&["decode", "--protocol", "infy", "-"], &log);
+    let places: Vec<_> = table.lines().skip(1).map(|row| row.find("0283F000")).collect();
+    assert_eq!(places, [Some("123456.25  a_longer_channel  ".len()); 4], "{table}");
 }
