@@ -2,10 +2,14 @@
 
 use std::io::{self, Write};
 
-/// The width that lines keep to, if the left columns leave room.
+use crate::output;
+
+/// The width that lines keep to where they are not shown on a terminal, if the left columns leave room.
 const WIDTH: usize = 140;
 /// The last column is never narrower.
 const NARROWEST: usize = 40;
+/// Where the last column begins if a terminal has no room for it beside the others.
+const INDENT: usize = 4;
 /// A column is never wider for a cell, which then moves the rest of its own row alone.
 const WIDEST: usize = 80;
 const GAP: &str = "  ";
@@ -15,14 +19,22 @@ const GAP: &str = "  ";
 pub struct Columns {
     /// The widths of all columns but the last.
     widths: Vec<usize>,
+    /// The width of a whole line.
+    line: usize,
 }
 
 impl Columns {
     /// Makes columns as wide as their headings.
     pub fn new(headings: &[&str]) -> Self {
-        let mut columns = Self { widths: vec![0; headings.len()] };
+        let mut columns = Self { widths: vec![0; headings.len()], line: WIDTH };
         columns.widen(headings);
         columns
+    }
+
+    /// Keeps to the width of a terminal, if there is one.
+    #[must_use]
+    pub fn within(self, terminal: Option<usize>) -> Self {
+        Self { line: terminal.unwrap_or(self.line), ..self }
     }
 
     /// Makes room for these cells.
@@ -67,8 +79,10 @@ impl Columns {
 
     /// Begins the last column of a row whose cells are filled. `line` is where it begins in the text.
     pub fn lines<'a>(&self, text: &'a mut Vec<u8>, line: usize) -> Lines<'a> {
-        let left = self.left();
-        Lines { left, room: WIDTH.saturating_sub(left).max(NARROWEST), line, first: text.len(), width: None, text }
+        let beside = self.left();
+        let is_beside = beside + NARROWEST <= self.line || self.line >= WIDTH;
+        let (left, first) = if is_beside { (beside, Some(text.len())) } else { (INDENT, None) };
+        Lines { left, room: self.line.saturating_sub(left).max(NARROWEST), line, first, width: None, text }
     }
 
     /// Returns the widths of all columns but the last.
@@ -97,8 +111,8 @@ pub struct Lines<'a> {
     room: usize,
     /// Where the last line begins in the text.
     line: usize,
-    /// Where the last column begins in the text.
-    first: usize,
+    /// Where the last column begins in the text, if it stands beside the others.
+    first: Option<usize>,
     /// The width of the last line in that column, unless the next item begins a new one.
     width: Option<usize>,
 }
@@ -130,7 +144,7 @@ impl Lines<'_> {
         let item = width(&self.text[start..]);
         match self.width {
             Some(line) if line + item <= room => self.width = Some(line + item),
-            None if start == self.first => self.width = Some(item),
+            None if Some(start) == self.first => self.width = Some(item),
             _ => self.begin_line(start, item),
         }
     }
@@ -164,7 +178,17 @@ impl Lines<'_> {
 ///
 /// Where `out` cannot be written.
 pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) -> io::Result<()> {
-    let mut columns = Columns::new(headings);
+    write_within(output::width(), out, headings, last, rows)
+}
+
+fn write_within(
+    terminal: Option<usize>,
+    out: &mut impl Write,
+    headings: &[&str],
+    last: &str,
+    rows: &[Row],
+) -> io::Result<()> {
+    let mut columns = Columns::new(headings).within(terminal);
     for row in rows {
         columns.widen(&row.cells());
     }
@@ -205,7 +229,7 @@ mod tests {
 
     fn written(rows: &[Row]) -> String {
         let mut out = Vec::new();
-        write(&mut out, &["A", "NAME"], "REST", rows).expect("a vector takes everything");
+        write_within(None, &mut out, &["A", "NAME"], "REST", rows).expect("a vector takes everything");
         String::from_utf8(out).expect("columns are text")
     }
 
@@ -233,6 +257,23 @@ mod tests {
         let word = "w".repeat(70);
         let text = written(&[row(["1", "x"], &[&word, &word])]);
         assert_eq!(text, format!("A  NAME  REST\n1  x     {word}\n         {word}\n"));
+    }
+
+    #[test]
+    fn a_table_on_a_terminal_is_as_wide_as_that() {
+        let words: Vec<_> = (10..40).map(|number| format!("word{number}")).collect();
+        let words: Vec<_> = words.iter().map(String::as_str).collect();
+        for (terminal, beside) in [(200, true), (100, true), (60, true), (49, true), (48, false), (44, false)] {
+            let mut out = Vec::new();
+            let rows = [row(["1", "x"], &words)];
+            write_within(Some(terminal), &mut out, &["A", "NAME"], "REST", &rows).expect("a vector takes everything");
+            let text = String::from_utf8(out).expect("columns are text");
+            let widest = text.lines().map(str::len).max().unwrap_or_default();
+            assert!((terminal - 6..=terminal).contains(&widest), "{terminal}: {text}");
+            assert_eq!(text.lines().nth(1).is_some_and(|line| line.contains("x     word10")), beside, "{text}");
+            let found: Vec<_> = text.split_whitespace().filter(|word| word.starts_with("word")).collect();
+            assert_eq!(found, words, "{terminal}");
+        }
     }
 
     /// Fills a last column of some width.

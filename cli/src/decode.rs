@@ -21,7 +21,7 @@ use crate::kept::Kept;
 use crate::line::{self, Outcome, Whole};
 use crate::log::{Asides, Entry, Reader};
 use crate::model::{Device, Model};
-use crate::output::output;
+use crate::output::{self, output};
 use crate::protocols::{self, Several};
 use crate::table::Table;
 use assemblies::{Assemblies, Mark};
@@ -187,6 +187,7 @@ impl Decode {
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
         let finish = finish?;
+        out.flush()?;
         self.suggest(&counts, finish);
         Ok(finish)
     }
@@ -287,7 +288,7 @@ impl Decode {
                 let jsonl = matches!(format, Format::Jsonl);
                 Ok(Printer::Summary { counts: Box::default(), jsonl })
             }
-            (Format::Text, false) => Ok(Printer::Text(Table::new(protocols))),
+            (Format::Text, false) => Ok(Printer::Text(Table::new(protocols).within(output::width()))),
             (Format::Jsonl, false) => Ok(Printer::Jsonl),
             (Format::Csv, false) => Ok(Printer::Csv(Rows::default())),
         }

@@ -12,6 +12,12 @@ pub fn output() -> io::Result<StdoutLock<'static>> {
     if closed::at_start() { Err(io::Error::other("it is closed")) } else { Ok(io::stdout().lock()) }
 }
 
+/// Returns how many characters a line of the terminal has, if standard output is one.
+pub fn width() -> Option<usize> {
+    let (terminal_size::Width(width), _) = terminal_size::terminal_size_of(io::stdout())?;
+    Some(width.into()).filter(|width| *width > 0)
+}
+
 #[cfg(target_os = "linux")]
 mod closed {
     use std::path::Path;
