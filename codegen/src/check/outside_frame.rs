@@ -20,7 +20,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at, text).help(help));
             }
         }
-        check_lengths(protocol, message, diagnostics);
+        check_selectors(protocol, message, diagnostics);
+        check_lengths(message, diagnostics);
     }
 }
 
@@ -35,28 +36,37 @@ fn outside(message: &Message, signal: &Signal) -> Option<String> {
     Some(format!("{name} takes bytes {start} to {}, but a frame can have {}", end - 1, bytes(*cut)))
 }
 
-/// Tests that what chooses a message is in its shortest frame, and that each longer frame carries
-/// more.
-fn check_lengths(protocol: &Protocol, message: &Message, diagnostics: &mut Diagnostics) {
-    let at = message.doc.path.key("length");
-    let mut report = |text: String, help: &str| {
-        diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at.at_value(), text).help(help));
-    };
+/// Tests that what chooses a message is in its shortest frame.
+fn check_selectors(protocol: &Protocol, message: &Message, diagnostics: &mut Diagnostics) {
     let selectors = protocol.frames_of(message).flat_map(|frame| &frame.selectors).map(|id| &protocol[*id]);
     let beyond = |selector: &&Selector| match selector.place {
         SelectorPlace::Payload(place) => last_byte(place) >= message.shortest(),
         SelectorPlace::Identifier(_) => false,
     };
-    if let Some(selector) = selectors.into_iter().find(beyond).filter(|_| message.lengths.len() > 1) {
-        let text =
-            format!("`{}` chooses the message, and a frame of {} lacks it", selector.name, bytes(message.shortest()));
-        return report(text, "take the shortest length out, or correct the place");
+    for selector in selectors.filter(beyond) {
+        let (name, own, length) = (&selector.name, &message.doc.path, bytes(message.shortest()));
+        let is_own = selector.doc.path.ancestors().any(|outer| outer == own);
+        let (at, help) = if is_own {
+            (place(&selector.doc.path, diagnostics), "correct the place, or the `length` of the message")
+        } else if message.lengths.len() > 1 {
+            (own.key("length").at_value(), "take the shortest length out, or correct the place")
+        } else {
+            (diagnostics.written(own, &["length"]), "write a greater `length`, or correct the place in the header")
+        };
+        let text = format!("`{name}` chooses `{}`, and a frame of {length} lacks it", message.name);
+        diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at, text).help(help));
     }
+}
+
+/// Tests that each longer frame carries more.
+fn check_lengths(message: &Message, diagnostics: &mut Diagnostics) {
     for pair in message.lengths.windows(2) {
         let [shorter, longer] = pair else { continue };
         if !message.signals.iter().any(|signal| (shorter + 1..=*longer).contains(&signal.end())) {
             let text = format!("no field of `{}` ends between the lengths {shorter} and {longer}", message.name);
-            return report(text, "name the field that only the longer frame has, or take one of the two out");
+            let help = "name the field that only the longer frame has, or take one of the two out";
+            let at = message.doc.path.key("length").at_value();
+            return diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at, text).help(help));
         }
     }
 }
