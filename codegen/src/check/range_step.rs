@@ -1,5 +1,7 @@
 #![doc = include_str!("../rules/range_step.md")]
 
+use std::iter;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Linear, Message, Protocol, Range, Signal};
 use crate::number::Rational;
@@ -11,7 +13,8 @@ rules! {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
-        for signal in message.signals.iter().flat_map(Signal::on_each) {
+        let signals = message.signals.iter().flat_map(Signal::on_each);
+        for signal in signals.flat_map(|signal| iter::once(signal).chain(signal.encoding.parts())) {
             let Some(linear) = signal.encoding.linear() else { continue };
             for (range, path) in signal.ranges() {
                 let missed = missed(range, linear);

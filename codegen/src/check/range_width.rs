@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
-use crate::model::{Protocol, Range, Signal};
+use crate::model::{Message, Protocol, Range, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
 use crate::syntax::tree::Path;
@@ -14,15 +14,27 @@ rules! {
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
         for signal in message.signals.iter().flat_map(Signal::on_each) {
-            let Some(holds) = signal.held() else { continue };
-            let exceeds = |range: &Range| range.minimum < holds.minimum || range.maximum > holds.maximum;
-            let exceeding: Vec<_> = signal.ranges().filter(|(range, _)| exceeds(range)).collect();
-            let place = diagnostics.written(&signal.doc.path, &["bytes", "bits"]);
-            let field = format!("`{}.{}` has {}", message.name, signal.name, held(signal, holds));
-            if let Some(diagnostic) = report(signal, place, &field, &exceeding) {
-                diagnostics.push_first(diagnostic.help(help(signal, exceeding[0].0, holds)));
+            check_signal(message, signal, help, diagnostics);
+            for part in signal.encoding.parts() {
+                check_signal(message, part, |_, _, _| "correct the limits or the place".to_owned(), diagnostics);
             }
         }
+    }
+}
+
+fn check_signal(
+    message: &Message,
+    signal: &Signal,
+    help: impl FnOnce(&Signal, Range, Range) -> String,
+    diagnostics: &mut Diagnostics,
+) {
+    let Some(holds) = signal.held() else { return };
+    let exceeds = |range: &Range| range.minimum < holds.minimum || range.maximum > holds.maximum;
+    let exceeding: Vec<_> = signal.ranges().filter(|(range, _)| exceeds(range)).collect();
+    let place = diagnostics.written(&signal.doc.path, &["bytes", "bits"]);
+    let field = format!("`{}.{}` has {}", message.name, signal.name, held(signal, holds));
+    if let Some(diagnostic) = report(signal, place, &field, &exceeding) {
+        diagnostics.push_first(diagnostic.help(help(signal, exceeding[0].0, holds)));
     }
 }
 

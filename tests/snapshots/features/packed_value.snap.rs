@@ -203,6 +203,52 @@ impl core::fmt::Display for LabelValue {
     }
 }
 
+/// Batch, whose limits lie between two numbers. Written as `B{number}`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BatchValue {
+    /// Number: byte 0, `0.5..=99.5`.
+    pub number: u8,
+}
+
+impl BatchValue {
+    const NUMBER: Place = Place::byte(0);
+
+    /// Returns the text, or `None` if it would not give the same value.
+    #[must_use]
+    #[inline]
+    pub fn text(self) -> Option<PackedText> {
+        Word::text(self)
+    }
+
+    /// Reads a text of the documented form.
+    #[must_use]
+    #[inline]
+    pub fn parse(text: &str) -> Option<Self> {
+        Word::parse(text)
+    }
+}
+
+impl Word for BatchValue {
+    type Raw = u64;
+    const LEGEND: Legend<u64> =
+        Legend::Text(1, &[Piece::Literal("B"), Piece::number::<u8>(Self::NUMBER).limits(1, 99)]);
+    const FROM_RAW: fn(u64) -> Self = |raw| {
+        let data = left_aligned(raw, 1);
+        Self { number: Self::NUMBER.read(&data) }
+    };
+    const RAW: fn(Self) -> u64 = |value| {
+        let mut data = [0; 8];
+        Self::NUMBER.write(value.number, &mut data);
+        right_aligned(data, 1)
+    };
+}
+
+impl core::fmt::Display for BatchValue {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        Word::write(*self, formatter)
+    }
+}
+
 /// Label on the housing: `command` 0x06. Section 2.
 /// - [`read`](READ_ACCESS): the module answers (`single`).
 /// - Request `063#0000000000000000`.
@@ -237,6 +283,40 @@ impl Layout for Label {
     }
 }
 
+/// Batch, whose limits lie between two numbers: `command` 0x07. Section 2.
+/// - [`read`](READ_ACCESS): the module answers (`single`).
+/// - Request `073#0000000000000000`.
+/// - Reply `473#0100000000000000`: `value` B1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Batch {
+    /// Value: byte 0.
+    pub value: BatchValue,
+}
+
+impl Batch {
+    /// The signal `value`, to read or write it alone, or to ask for its limits.
+    pub const VALUE: Signal<BatchValue> = Signal::new("value", Place::byte(0));
+    /// The access `read`, for filters and blank frames of it.
+    pub const READ: Exchange = READ_ACCESS.of("batch").id(Identifier::COMMAND, 0x07);
+
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
+    #[inline(always)]
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::READ.inlined_request_to(route, &())
+    }
+}
+
+impl Layout for Batch {
+    const SIGNALS: AnySignals = &[&Self::VALUE];
+    const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+
+    #[inline(always)]
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::VALUE, self.value)
+    }
+}
+
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
@@ -244,6 +324,10 @@ pub enum Message {
     ReadLabel,
     /// Label on the housing.
     Label(Label),
+    /// The request of `batch` by `read`.
+    ReadBatch,
+    /// Batch, whose limits lie between two numbers.
+    Batch(Batch),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -292,23 +376,30 @@ impl Protocol for Message {
     fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x06 => frame.pair(&Label::READ, Self::ReadLabel, Self::Label(frame.values())),
+            0x07 => frame.pair(&Batch::READ, Self::ReadBatch, Self::Batch(frame.values())),
             _ => frame.unknown(),
         }
     }
 
     fn lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x06 { &[8] } else { &[] }
+        match frame.id(Identifier::COMMAND) {
+            0x06 | 0x07 => &[8],
+            _ => &[],
+        }
     }
 
     #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Label(message) => task.run(message),
-            Self::ReadLabel => task.run(&()),
+            Self::Batch(message) => task.run(message),
+            _ => task.run(&()),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::of::<Label>("Label on the housing", &[("command", 0x06)], &[&Label::READ])];
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::of::<Label>("Label on the housing", &[("command", 0x06)], &[&Label::READ]),
+    Entry::of::<Batch>("Batch, whose limits lie between two numbers", &[("command", 0x07)], &[&Batch::READ]),
+];

@@ -177,6 +177,20 @@ impl Draft {
         change
     }
 
+    /// Writes the range of a part. Its ends can lie between two numbers, and few lie beyond what the bits hold.
+    fn range_of_part(&mut self, greatest: u32) -> String {
+        let first = self.random.u32(..=greatest);
+        let ends = [first, self.random.u32(first..=greatest)].map(i128::from);
+        let [first, last] = match self.random.u8(..100) {
+            0 => [-2, 2 * ends[1]],
+            1 => [2 * ends[0], 2 * i128::from(greatest) + 2],
+            2..20 if ends[0] < ends[1] => [2 * ends[0] + 1, 2 * ends[1] - 1],
+            _ => ends.map(|end| 2 * end),
+        };
+        let half = |count| Rational::integer(count).over(Rational::integer(2)).expect("2 is not 0").fraction();
+        format!("{}..{}", half(first), half(last))
+    }
+
     pub fn packed_number(&mut self, part: &mut Map, format: &mut String, name: &str, bits: u8) {
         let digits = if self.random.bool() { String::new() } else { format!(":{}", self.random.u8(1..=6)) };
         format.extend(["{", name, digits.as_str(), "}"]);
@@ -186,7 +200,8 @@ impl Draft {
         }
         if self.chance(40) {
             let greatest = if is_decimal { 10_u32.pow(u32::from(bits / 4)) - 1 } else { u32::MAX >> (32 - bits) };
-            part.put("range", format!("0..{}", self.random.u32(..=greatest)));
+            let range = self.range_of_part(greatest);
+            part.put("range", range);
         }
         self.remark(part);
     }

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 
 use super::doc::{self, Comment};
 use super::encoding::{Part, integer};
+use super::limits::Limits;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
@@ -264,7 +265,8 @@ impl Piece {
             model::Piece::Part { part, digits } => (&parts[*part], *digits),
         };
         let place = screaming(&part.name);
-        let limits = part.range.map(|range| (decimal(range.minimum.numerator()), decimal(range.maximum.numerator())));
+        let limits = part.range.map(|range| Limits::Raw.range(part, range));
+        let limits = limits.map(|range| (decimal(range.minimum.numerator()), decimal(range.maximum.numerator())));
         match Part::new(part) {
             Part::Text(_) => Self::Text(place),
             Part::Number(kind) => Self::Number { place, kind, digits: digits.map(Literal::usize_unsuffixed), limits },
