@@ -5,6 +5,8 @@ use canspec_codegen::emit::Scaled;
 use canspec_codegen::{check, compile, source::Source};
 use canspec_runtime::plumbing::{Integer, Scale};
 use canspec_runtime::{Payload, Place, Signal};
+use canspec_tests::features_limits_between_steps_switched as in_single_precision;
+use canspec_tests::{features_limits_between_steps, features_limits_between_steps_in_steps};
 
 /// physical = (raw × `step` + `start`) / `common`.
 #[derive(Clone, Copy, Debug)]

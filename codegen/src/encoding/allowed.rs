@@ -51,15 +51,26 @@ impl Allowed {
         missed.map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", signal.unit_text())))
     }
 
-    /// Tests a number to send, and the number or special value that it is rounded to.
-    pub fn check_sent(&self, signal: &Signal, value: f64, sent: f64, special: Option<&str>) -> Result<(), String> {
+    /// Tests a raw value exactly, and shows its number.
+    pub fn check_raw(&self, signal: &Signal, raw: i128, shown: f64) -> Result<(), String> {
+        self.check_by(signal, shown, |range| signal.is_inside(*range, raw))
+    }
+
+    /// Tests a number to send, and the raw value that it is rounded to, whose number is `sent`.
+    pub fn check_sent(
+        &self,
+        signal: &Signal,
+        value: f64,
+        (raw, sent): (i128, f64),
+        special: Option<&str>,
+    ) -> Result<(), String> {
         let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
         if matches!(self, Self::Everything) || is_exact && special.is_some() {
             return Ok(());
         }
         self.check(signal, value)?;
         let unit = signal.unit_text();
-        match (special, self.missed(signal, |range| signal.is_within(range, sent))) {
+        match (special, self.missed(signal, |range| signal.is_inside(*range, raw))) {
             (Some(name), _) => Err(format!("{value}{unit} would be sent as `{name}`")),
             (None, Some(limits)) => {
                 Err(format!("{value}{unit} would be sent as {sent}{unit}, which is outside {limits}"))

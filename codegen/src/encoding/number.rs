@@ -97,7 +97,7 @@ impl Number<'_> {
             return Err(why);
         }
         let special = self.special(raw).map(|special| special.name.as_str());
-        allowed.check_sent(self.signal, value, self.physical(integer), special)?;
+        allowed.check_sent(self.signal, value, (raw, self.physical(integer)), special)?;
         if special.is_none() && self.is_unscaled() {
             allowed.check_whole(self.signal, integer)?;
         }
@@ -123,7 +123,7 @@ impl Number<'_> {
         match (self.special(raw), self.numeral.integer(raw)) {
             (Some(_), _) => {}
             (None, Some(integer)) if self.is_unscaled() => allowed.check_whole(self.signal, integer)?,
-            (None, Some(integer)) => allowed.check(self.signal, self.physical(integer))?,
+            (None, Some(integer)) => allowed.check_raw(self.signal, raw, self.physical(integer))?,
             (None, None) => allowed.check_meaning(raw)?,
         }
         Ok(bits)

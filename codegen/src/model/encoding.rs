@@ -80,6 +80,13 @@ impl Linear {
         let (one, other) = (steps(range.minimum)?, steps(range.maximum)?);
         Some([one.min(other).ceiling(), one.max(other).floor()])
     }
+
+    /// Returns the nearest values below and above a range; `None` on overflow.
+    pub fn beyond(&self, range: Range) -> Option<[Rational; 2]> {
+        let [first, last] = self.integers(range)?;
+        let (one, other) = (self.value(first - 1)?, self.value(last + 1)?);
+        Some([one.min(other), one.max(other)])
+    }
 }
 
 /// Each question is an exhaustive match, so a new encoding must answer it.
@@ -233,6 +240,20 @@ mod tests {
         assert_eq!(integers("1/2", "-40", ["-40", "80"]), Some([0, 240]));
         // 10 - 0.5 n: 9.5 is n = 1, and 0.5 is n = 19.
         assert_eq!(integers("-1/2", "10", ["0.3", "9.9"]), Some([1, 19]));
+    }
+
+    #[test]
+    fn the_steps_beyond_a_range_are_the_nearest_outside() {
+        let beyond = |scale: &str, offset: &str, range: [&str; 2]| {
+            let [scale, offset] = [scale, offset].map(Rational::parse);
+            let [minimum, maximum] = range.map(Rational::parse);
+            let linear = Linear { numeral: Numeral::Signed, scale: scale?, offset: offset? };
+            linear.beyond(Range { minimum: minimum?, maximum: maximum? })
+        };
+        let values = |texts: [&str; 2]| Some(texts.map(|text| Rational::parse(text).unwrap_or(Rational::ZERO)));
+        assert_eq!(beyond("1/10", "0", ["0.04", "20.06"]), values(["0", "20.1"]));
+        assert_eq!(beyond("1/2", "-40", ["-40", "80"]), values(["-40.5", "80.5"]));
+        assert_eq!(beyond("-1/2", "10", ["0.3", "9.9"]), values(["0", "10"]));
     }
 
     #[test]

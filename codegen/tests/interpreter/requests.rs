@@ -84,6 +84,15 @@ fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_range_too() {
 }
 
 #[test]
+fn a_step_beyond_a_limit_is_refused_though_both_have_the_same_nearest_double() {
+    let charger = feature("limits_between_steps");
+    let sent = |share| requested(&charger, None, "set_reach", "charger", &[("reach", "0"), ("share", share)]);
+    assert_eq!(sent("0.299").as_deref(), Ok("00A#00000000012B0000"));
+    let refused = sent("0.3").expect_err("300/1000 lies outside").to_string();
+    assert_eq!(refused, "set_reach.share: 0.3 would be sent as 0.3, which is outside 0..0.29999999999999999");
+}
+
+#[test]
 fn a_limit_of_64_bits_is_exact() {
     // 2^53 + 3 is no double; the nearest one is 2^53 + 4.
     let charger = feature("limits_between_steps");

@@ -213,6 +213,45 @@ impl Layout for SetTotal {
     }
 }
 
+/// Set reach: `command` 0x005. Section 2.
+/// - [`write`](WRITE_ACCESS): the module answers (`charger`).
+/// - Request `00A#003851EA012B0000`: `reach` 3604.478515625, `share` 0.299.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SetReach {
+    /// Reach in steps of 1/1024: bytes 0..3, `-3690986..=3690986`.
+    pub reach_raw: i32,
+    /// Share in steps of 0.001: bytes 4..5, `0..=299`.
+    pub share_raw: u16,
+}
+
+impl SetReach {
+    /// The signal `reach`, to read or write it alone, or to ask for its limits.
+    pub const REACH: Signal<i32> =
+        Signal::new("reach", Place::bytes(0, 3)).scale(1, 1024).limits(-3_690_986, 3_690_986);
+    /// The signal `share`, to read or write it alone, or to ask for its limits.
+    pub const SHARE: Signal<u16> = Signal::new("share", Place::bytes(4, 5)).scale(1, 1000).limits(0, 299);
+    /// The access `write`, for filters and blank frames of it.
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_reach").id(Identifier::COMMAND, 0x005);
+
+    /// Builds the request [`write`](WRITE_ACCESS) with these values. Refuses values outside their limits,
+    /// other addressing modes and undocumented addresses.
+    #[inline(always)]
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::WRITE.inlined_request_to(route, self)
+    }
+}
+
+impl Layout for SetReach {
+    const SIGNALS: AnySignals = &[&Self::REACH, &Self::SHARE];
+    const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
+    const DECODE: Decode<Self> = |data| Self { reach_raw: Self::REACH.get(data), share_raw: Self::SHARE.get(data) };
+
+    #[inline(always)]
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.put(&Self::REACH, self.reach_raw) && payload.put(&Self::SHARE, self.share_raw)
+    }
+}
+
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
@@ -220,6 +259,8 @@ pub enum Message {
     SetLimit(SetLimit),
     /// Set total.
     SetTotal(SetTotal),
+    /// Set reach.
+    SetReach(SetReach),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -256,13 +297,14 @@ impl Protocol for Message {
         match frame.id(Identifier::COMMAND) {
             0x003 => frame.both(&SetLimit::WRITE, Self::SetLimit(frame.values())),
             0x004 => frame.both(&SetTotal::WRITE, Self::SetTotal(frame.values())),
+            0x005 => frame.both(&SetReach::WRITE, Self::SetReach(frame.values())),
             _ => frame.unknown(),
         }
     }
 
     fn lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
-            0x003 | 0x004 => &[8],
+            0x003..=0x005 => &[8],
             _ => &[],
         }
     }
@@ -272,6 +314,7 @@ impl Protocol for Message {
         match self {
             Self::SetLimit(message) => task.run(message),
             Self::SetTotal(message) => task.run(message),
+            Self::SetReach(message) => task.run(message),
         }
     }
 }
@@ -280,4 +323,5 @@ impl Protocol for Message {
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::of::<SetLimit>("set limit", &[("command", 0x003)], &[&SetLimit::WRITE]),
     Entry::of::<SetTotal>("set total", &[("command", 0x004)], &[&SetTotal::WRITE]),
+    Entry::of::<SetReach>("set reach", &[("command", 0x005)], &[&SetReach::WRITE]),
 ];

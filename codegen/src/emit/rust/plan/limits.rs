@@ -43,12 +43,17 @@ impl Limits {
 
     /// Writes the ends of a range that [`range`](Self::range) returned.
     pub fn ends(self, signal: &Signal, Range { minimum, maximum }: Range) -> [TokenStream; 2] {
-        let end = |end: Rational| match (self, signal.encoding.linear()) {
-            (Self::Physical(precision), _) => precision.nearest(end),
-            (Self::Raw, None) => Precision::Single.nearest(end),
-            (Self::Raw, Some(linear)) => raw_number(signal, linear.numeral.raw(end.numerator()).unwrap_or(0)),
-        };
-        [minimum, maximum].map(end)
+        let (ends, linear) = ([minimum, maximum], signal.encoding.linear());
+        match (self, linear) {
+            (Self::Physical(precision), _) => {
+                let beyond = linear.and_then(|linear| linear.beyond(Range { minimum, maximum }));
+                beyond.map_or_else(|| ends.map(|end| precision.nearest(end)), |beyond| precision.inside(ends, beyond))
+            }
+            (Self::Raw, None) => ends.map(|end| Precision::Single.nearest(end)),
+            (Self::Raw, Some(linear)) => {
+                ends.map(|end| raw_number(signal, linear.numeral.raw(end.numerator()).unwrap_or(0)))
+            }
+        }
     }
 }
 

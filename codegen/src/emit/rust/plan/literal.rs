@@ -1,5 +1,7 @@
 //! Literals as people write them: hexadecimal fields, digits in groups.
 
+use std::fmt::Display;
+
 use canspec_runtime::Data;
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
@@ -47,13 +49,37 @@ impl Precision {
 
     /// Writes what is nearest to a number.
     pub fn nearest(self, number: Rational) -> TokenStream {
-        let text = match self {
-            Self::Double => number.to_f64().to_string(),
-            #[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is wanted")]
-            Self::Single => (number.to_f64() as f32).to_string(),
-        };
-        signed(&if text.contains('.') { text } else { format!("{text}.0") })
+        match self {
+            Self::Double => float(number.to_f64()),
+            Self::Single => float(single(number)),
+        }
     }
+
+    /// Writes limits, which no number beyond them passes. They are what is nearest to the ends of a range, unless
+    /// numbers outside it would be rounded to the same.
+    pub fn inside(self, ends: [Rational; 2], beyond: [Rational; 2]) -> [TokenStream; 2] {
+        match self {
+            Self::Double => {
+                let [ends, [below, above]] = [ends, beyond].map(|pair| pair.map(Rational::to_f64));
+                [ends[0].max(below.next_up()), ends[1].min(above.next_down())].map(float)
+            }
+            Self::Single => {
+                let [ends, [below, above]] = [ends, beyond].map(|pair| pair.map(single));
+                [ends[0].max(below.next_up()), ends[1].min(above.next_down())].map(float)
+            }
+        }
+    }
+}
+
+/// Returns the nearest single.
+#[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is wanted")]
+fn single(number: Rational) -> f32 {
+    number.to_f64() as f32
+}
+
+fn float(number: impl Display) -> TokenStream {
+    let text = number.to_string();
+    signed(&if text.contains('.') { text } else { format!("{text}.0") })
 }
 
 /// Writes the eight bytes of a frame.
