@@ -3,7 +3,9 @@
 use std::fmt::Debug;
 
 use arbitrary::{Arbitrary, Unstructured};
+use canspec_codegen::emit::{Options, Switch};
 use canspec_codegen::interpret;
+use canspec_codegen::source::Source;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
 use canspec_runtime::plumbing::{Raw, Task};
@@ -38,6 +40,21 @@ impl Task for Bytewise {
         let mut payload = Payload::new("message", [0; 8]);
         values.encode(&mut payload).expect("what was decoded fits its signals");
         *payload.data()
+    }
+}
+
+#[test]
+fn a_spec_without_messages_imports_only_what_its_code_names() {
+    let spec = include_str!("../specs/rules/grid/good.yaml");
+    let (head, _) = spec.split_once("access:").expect("the spec has an access");
+    let spec = format!("{head}access: {{}}\nmodels: {{HX: {{section: \"1\"}}}}\n");
+    let [serde, defmt, arbitrary] = [(); 3].map(|()| Switch::Always);
+    let options = Options { serde, defmt, arbitrary, ..Options::default() };
+    let source = Source::new("heater.yaml", spec.into_bytes()).expect("plain text");
+    let code = canspec_codegen::generate(source, &options).unwrap_or_else(|why| panic!("{why}")).code;
+    for name in ["arbitrary", "defmt", "serde"] {
+        let is_imported = code.contains(&format!("use canspec_runtime::plumbing::{name};"));
+        assert_eq!(is_imported, code.contains(&format!("{name}::")), "{name}");
     }
 }
 

@@ -100,7 +100,7 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
 
 /// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.
 fn head(plan: &Plan, derives: Derives) -> TokenStream {
-    let optional = derives.imports();
+    let optional = derives.imports(!plan.messages.is_empty());
     let about = about::about(&plan.about);
     let frame = filter::base(&plan.base);
     let selectors = plan.in_data.iter().map(filter::in_data);

@@ -46,9 +46,10 @@ impl<'a> Derives<'a> {
         }
     }
 
-    /// Emits the imports of the crates, which the runtime re-exports.
-    pub fn imports(self) -> TokenStream {
+    /// Emits the imports of the crates, which the runtime re-exports. Only messages have values that are arbitrary.
+    pub fn imports(self, has_messages: bool) -> TokenStream {
         let Options { serde, defmt, arbitrary, .. } = self.options;
+        let arbitrary = if has_messages { arbitrary } else { &Switch::Never };
         let crates = [("arbitrary", arbitrary), ("defmt", defmt), ("serde", serde)];
         let imports = crates.map(|(name, switch)| {
             let name = format_ident!("{name}");
