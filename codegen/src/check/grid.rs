@@ -10,18 +10,26 @@ rules! {
     GRID "grid" Check ERROR;
 }
 
-/// Sums and products of raw values must stay below this power of two.
+/// Sums and products of raw values must stay below this power of two. Factors of two that the scale and the offset share
+/// do not count, since they leave the digits of a float as they are.
 const DOUBLE: u32 = 50;
 
-/// The same in single precision, for raw values within the documented range if there is one.
+/// Below this power of two, a double holds every integer exactly. If the common denominator is a power of two, every step
+/// is exact.
+const EXACT_DOUBLE: u32 = 53;
+
+/// Sums and products are integers of 64 bits on the way.
+const HELD: u32 = 62;
+
+/// The same as `DOUBLE` in single precision, for raw values within the documented range if there is one.
 ///
 /// This is measured. Among 2000 scales without offset, the first raw value that changes on the way
 /// is 4 207 191, in steps of 1/1027. With offsets, none of 440 million random cases below 2^22
 /// changes.
 const SINGLE: u32 = 22;
 
-/// Below this power of two, a single holds every integer exactly. If the common denominator is one,
-/// every step is exact. Limits with a fraction must stay below it, too, if the number is unscaled.
+/// The same as `EXACT_DOUBLE` in single precision. Limits with a fraction must stay below it, too, if the number is
+/// unscaled.
 const EXACT: u32 = 24;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -32,14 +40,13 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         if scale == Rational::ZERO {
             return Some("a scale of 0 makes every value 0".to_owned());
         }
-        (!has_exact_steps(width, linear))
-            .then(|| format!("{width} bits in steps of {scale} reach 2^50, beyond which an `f64` misses steps"))
+        missed(beyond(width, linear.numeral), linear, DOUBLES, || format!("{width} bits in steps of {scale}"))
     });
 }
 
 /// Tests whether a double tells apart all steps of a scaled number that is `width` bits wide.
 pub fn has_exact_steps(width: u8, linear: Linear) -> bool {
-    linear.scale != Rational::ZERO && is_below(largest(beyond(width, linear.numeral), linear), DOUBLE)
+    linear.scale != Rational::ZERO && missed(beyond(width, linear.numeral), linear, DOUBLES, String::new).is_none()
 }
 
 /// Looks for scales and limits that do not fit single precision, if generated code calculates in
@@ -57,16 +64,42 @@ fn missed_by_single(signal: &Signal, linear: Linear) -> Option<String> {
         return None;
     }
     let (width, scale) = (signal.place.width(), linear.scale);
-    let Some(denominator) = scale.common_denominator(linear.offset).filter(|common| is_below(Some(*common), EXACT))
-    else {
-        return Some(format!("the denominator of {scale} reaches 2^{EXACT}, beyond which a single misses integers"));
-    };
-    let limit = if denominator.count_ones() == 1 { EXACT } else { SINGLE };
     let documented = documented(signal, linear);
-    let extreme = largest(documented.unwrap_or_else(|| farthest(width, linear.numeral)), linear);
     let raw = documented.map_or_else(|| format!("{width} bits"), |raw| format!("raw values to {raw}"));
-    (!is_below(extreme, limit))
-        .then(|| format!("{raw} times {scale} reach 2^{limit}, beyond which a single misses steps"))
+    let extreme = documented.unwrap_or_else(|| farthest(width, linear.numeral));
+    missed(extreme, linear, SINGLES, || format!("{raw} times {scale}"))
+}
+
+/// What a floating-point type tells apart.
+struct Type {
+    name: &'static str,
+    /// The power of two below which it tells steps apart, and that if the common denominator is a power of two.
+    powers: [u32; 2],
+}
+
+const DOUBLES: Type = Type { name: "an `f64`", powers: [DOUBLE, EXACT_DOUBLE] };
+const SINGLES: Type = Type { name: "a single", powers: [SINGLE, EXACT] };
+
+/// Says why a type misses some of the numbers that are calculated from an integer. `what` names them.
+fn missed(
+    integer: i128,
+    linear: Linear,
+    Type { name, powers: [power, exact] }: Type,
+    what: impl FnOnce() -> String,
+) -> Option<String> {
+    let Some([largest, shared, denominator]) = largest(integer, linear) else {
+        return Some(format!("{} reach 2^{HELD}, beyond which nothing calculates", what()));
+    };
+    if denominator >= 1 << exact {
+        let scale = linear.scale;
+        return Some(format!("the denominator of {scale} reaches 2^{exact}, beyond which {name} misses integers"));
+    }
+    let power = if denominator.is_power_of_two() { exact } else { power };
+    let is_told_apart = largest < 1 << HELD && largest / shared < 1 << power;
+    (!is_told_apart).then(|| {
+        let most = HELD.min(power + shared.ilog2());
+        format!("{} reach 2^{}, and {name} tells steps apart below 2^{most}", what(), largest.ilog2())
+    })
 }
 
 /// Looks for faults in the scale of each scaled signal.
@@ -138,10 +171,12 @@ fn documented(signal: &Signal, linear: Linear) -> Option<i128> {
     ends.chain(specials.map(i128::checked_abs)).try_fold(0, |largest: i128, integer| Some(integer?.max(largest)))
 }
 
-/// Returns the largest |integer * a + b| where physical = (integer * a + b) / c; `None` on overflow.
-fn largest(integer: i128, Linear { scale, offset, .. }: Linear) -> Option<i128> {
-    let common = Rational::integer(scale.common_denominator(offset)?);
-    let step = scale.times(common)?.to_integer()?;
-    let start = offset.times(common)?.to_integer()?;
-    integer.checked_mul(step.checked_abs()?)?.checked_add(start.checked_abs()?)
+/// Returns the largest |integer * a + b| where physical = (integer * a + b) / c, the greatest power of two that divides a
+/// and b, and c. It is `None` on overflow.
+fn largest(integer: i128, Linear { scale, offset, .. }: Linear) -> Option<[u128; 3]> {
+    let denominator = scale.common_denominator(offset)?;
+    let over = |number: Rational| number.times(Rational::integer(denominator))?.to_integer()?.checked_abs();
+    let (step, start) = (over(scale)?, over(offset)?);
+    let largest = integer.checked_mul(step)?.checked_add(start)?;
+    Some([largest.unsigned_abs(), 1 << (step | start).trailing_zeros().min(HELD), denominator.unsigned_abs()])
 }
