@@ -11,6 +11,9 @@ use crate::log;
 /// More decimals than any scale needs that `check` accepts.
 const MOST_DECIMALS: usize = 18;
 
+/// People still read an exact value with this many decimals easily.
+const EXACT_DECIMALS: usize = 4;
+
 /// Adds the value of a signal, without its unit, to a text.
 pub fn write(text: &mut Vec<u8>, protocol: &Protocol, signal: &Signal, reading: &Reading) {
     let _ = match &reading.value {
@@ -73,7 +76,8 @@ fn digits(text: &mut Vec<u8>, is_negative: bool, number: u64, decimals: usize) -
     text.write_all(&digits[start..])
 }
 
-/// Returns the fewest decimals with which each value still leads back to its own raw number.
+/// Returns how many decimals values have. They show each value exactly if four do. Else they are the fewest with which
+/// each still leads back to its own raw number.
 ///
 /// A value is rounded by at most half a unit of its last decimal. It stays the nearest on the grid of the scale if that
 /// unit is smaller than a step, or if nothing is rounded at all.
@@ -85,12 +89,12 @@ fn decimals(linear: &Linear) -> usize {
     if let Some(places) = POWERS.iter().position(|power| (step, offset) == (1, 1) && *power == scale) {
         return places;
     }
-    let suffices = |units: &i64| {
-        let is_exact = units % scale == 0 && units % offset == 0;
-        is_exact || step.saturating_abs().checked_mul(*units).is_none_or(|step| step > scale)
-    };
-    let units = std::iter::successors(Some(1_i64), |units| units.checked_mul(10));
-    units.take(MOST_DECIMALS).position(|units| suffices(&units)).unwrap_or(MOST_DECIMALS)
+    let is_exact = |units: i64| units % scale == 0 && units % offset == 0;
+    let suffices =
+        |units: i64| is_exact(units) || step.saturating_abs().checked_mul(units).is_none_or(|step| step > scale);
+    let units = || std::iter::successors(Some(1_i64), |units| units.checked_mul(10));
+    let exact = units().take(EXACT_DECIMALS + 1).position(is_exact);
+    exact.or_else(|| units().take(MOST_DECIMALS).position(suffices)).unwrap_or(MOST_DECIMALS)
 }
 
 /// Writes the shortest text of a number that came as an `f32`.
@@ -172,17 +176,19 @@ mod tests {
     }
 
     #[test]
-    fn a_decimal_less_would_confuse_raw_values_of_the_built_in_protocols() {
+    fn a_decimal_less_would_confuse_or_round_values_of_the_built_in_protocols() {
         let mut rounded = 0;
         every_signal(|protocol, message, signal, _| {
             let Some(linear) = signal.encoding.linear().filter(|linear| decimals(linear) > 0) else { return };
             let fewer = decimals(&linear) - 1;
-            let is_confused = |bits: &u64| {
+            let is_coarse = |bits: &u64| {
                 let Value::Number(number) = physical(protocol, signal, *bits) else { return false };
-                back(protocol, message, signal, &format!("{number:.fewer$}")) != Some(*bits)
+                let text = format!("{number:.fewer$}");
+                let is_rounded = text.parse() != Ok(number) && fewer < EXACT_DECIMALS;
+                is_rounded || back(protocol, message, signal, &text) != Some(*bits)
             };
             let name = &signal.name;
-            assert!(raw_values(signal.place.width()).iter().any(is_confused), "{}.{name}", protocol.name);
+            assert!(raw_values(signal.place.width()).iter().any(is_coarse), "{}.{name}", protocol.name);
             rounded += 1;
         });
         assert!(rounded >= 50, "{rounded} signals");
@@ -204,7 +210,7 @@ mod tests {
 
     #[test]
     fn decimals_follow_from_scale_and_offset() {
-        // Steps of 1/1024 are 0.00098: three decimals are too coarse, four are not.
+        // Steps of 1/1024 are 0.00098: three decimals are too coarse, four are not, and none below ten are exact.
         let cases = [
             ("1", "0", 0),
             ("10", "0", 0),
@@ -212,7 +218,13 @@ mod tests {
             ("1/1024", "0", 4),
             ("0.001", "0", 3),
             ("0.5", "0", 1),
-            ("2", "0.5", 0),
+            // A quarter needs two decimals, and a sixteenth four: 1/16 = 0.0625. A 32nd would need five.
+            ("1/4", "0", 2),
+            ("1/8", "0", 3),
+            ("1/16", "0", 4),
+            ("1/32", "0", 2),
+            ("1", "1/4", 2),
+            ("2", "0.5", 1),
             ("1", "0.5", 1),
             ("0.1", "0.05", 2),
             ("-0.1", "40", 1),
