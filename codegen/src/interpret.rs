@@ -115,6 +115,16 @@ pub struct Decoded {
 }
 
 impl Decoded {
+    /// Takes out the signals of a frame that the chosen device model does not have, if no bit shows them.
+    pub fn hide_lacking(&mut self, protocol: &Protocol) {
+        let Some(model) = self.model.filter(|_| self.long.is_none()) else { return };
+        let message = &protocol[self.message];
+        self.signals.retain(|reading| {
+            let signal = &message[reading.signal];
+            signal.is_of(model) || protocol.lack(message, signal, model, reading.bits).is_some()
+        });
+    }
+
     /// Returns the message that has the signals: that of the frame, or what its parts carry together.
     #[inline]
     pub fn content<'a>(&self, protocol: &'a Protocol) -> &'a Message {

@@ -135,7 +135,9 @@ def expected(line, dissector):
         fields[f"{of}problem"] = line["problem"]["kind"]
         fields[f"{groups['note']}.unrecognised"] = "1"
         return fields, None
-    fields |= {of + key: line[key] for key in ("message", "access", "kind", "addressing", "reserved") if line.get(key)}
+    # Reserved bits that are all 0 only say how long the frame is.
+    keys = ("message", "access", "kind", "addressing", "reserved")
+    fields |= {of + key: line[key] for key in keys if (line.get(key) or "").strip("0")}
     refused = refusal(line)
     texts = [refused] if refused else []
     for name, signal in {} if refused else alone(of + line["message"], line["signals"], dissector):

@@ -61,12 +61,14 @@ impl Choice {
         self.signal.is_empty() && self.severity.is_empty()
     }
 
-    /// Takes away signals that are not chosen, and returns whether the frame is still to be shown.
+    /// Takes away signals that the device model does not have, or that are not chosen. It returns whether the frame is
+    /// still to be shown.
     pub fn keep(&self, protocol: &Protocol, decoded: &mut Decoded) -> bool {
         let message = decoded.content(protocol);
         if !self.has_message(protocol, message) {
             return false;
         }
+        decoded.hide_lacking(protocol);
         if self.has_all_signals() {
             return true;
         }

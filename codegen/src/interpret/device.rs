@@ -2,10 +2,10 @@
 
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
-use super::encode::{find_message, frame, length_with, refuse};
+use super::encode::{find_message, frame, refuse};
 use super::given::Given;
 use super::long::{typed, typed_frames};
-use super::request::{Target, address, put_signals, raw_address, written_address};
+use super::request::{Target, address, length_typed, put_signals, raw_address, written_address};
 use super::transfer::frames;
 use super::{Frame, Limits, Refusal, decode};
 use crate::model::{
@@ -98,7 +98,7 @@ fn one(
     let mut data = blank_data(layout);
     put_normal(protocol, layout, &mut data);
     let (id, signals) = (given.put(protocol, id, &mut data), &given.signals);
-    let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
+    let length = length_typed(message, layout, signals, sent.model);
     put_signals(protocol, message, (layout, length), signals, (sent.model, Limits::Bits), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
     let decoded = decode(protocol, sent.model, &frame).map_err(|problem| refuse(message, &problem.text))?;

@@ -154,10 +154,10 @@ pub fn frame(protocol: &Protocol, id: u32, data: Vec<u8>) -> Frame {
     Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
 }
 
-/// Returns how many data bytes a frame has if it carries the signals that are given.
-pub fn length_with(message: &Message, layout: &FrameLayout, is_given: impl Fn(&str) -> bool) -> usize {
-    let given = layout.signals.iter().map(|id| &message[*id]).filter(|signal| is_given(&signal.name));
-    let needed = given.map(Signal::end).max().unwrap_or(0);
+/// Returns how many data bytes a frame has if it carries some of its signals.
+pub fn length_with(message: &Message, layout: &FrameLayout, is_there: impl Fn(&Signal) -> bool) -> usize {
+    let there = layout.signals.iter().map(|id| &message[*id]).filter(|signal| is_there(signal));
+    let needed = there.map(Signal::end).max().unwrap_or(0);
     let fitting = layout.lengths.iter().copied().find(|length| *length >= needed);
     fitting.unwrap_or(layout.longest()).into()
 }
@@ -230,8 +230,9 @@ fn payload(
     limits: (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
     let mut data = [0; 8];
-    let is_given = |name: &str| content.signals.iter().any(|(given, _)| given == name);
-    let length = length_with(message, layout, is_given);
+    let is_given = |signal: &Signal| content.signals.iter().any(|(given, _)| *given == signal.name);
+    let told = Some(content.reserved.len()).filter(|told| *told > 0 && layout.has_length(*told));
+    let length = told.unwrap_or_else(|| length_with(message, layout, is_given));
     put_selectors(protocol, message, layout, content, &mut data)?;
     put_signals(protocol, message, (layout, length), content, limits, &mut data)?;
     put_reserved(message, (layout, length), content, &mut data)?;
@@ -279,6 +280,11 @@ fn put_signals(
     let signals = layout.signals.iter().map(|id| &message[*id]);
     for signal in signals.filter(|signal| usize::from(signal.end()) <= length) {
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
+        let blank = model.filter(|model| given.is_none() && !signal.is_of(*model));
+        if let Some(lacking) = blank.and_then(|model| protocol.lacking(message, signal, model)) {
+            signal.place.put(data, lacking.blank);
+            continue;
+        }
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
         let bits = raw_of(protocol, message, signal.on(model), input, limits)?;
         signal.place.put(data, bits);

@@ -115,8 +115,8 @@ pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId
     if let Some(text) = model.and_then(lack) {
         return Some(Note { rule: NoteRule::ModelDependent, text });
     }
-    if model.is_some_and(|model| !signal.is_of(model)) {
-        return None;
+    if let Some(model) = model.filter(|model| !signal.is_of(*model)) {
+        return message.is_optional(signal).then(|| longer_note(protocol, signal, model));
     }
     let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
     if let Some((rule, text)) = oddity {
@@ -127,6 +127,12 @@ pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId
         Value::Number(value) => range_note(signal, model, value, |range| signal.is_within(range, *value)),
         Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => None,
     }
+}
+
+/// Says that a frame is long enough for a signal that the device model does not have.
+fn longer_note(protocol: &Protocol, signal: &Signal, model: ModelId) -> Note {
+    let text = format!("{} has no `{}`, for which the frame is long enough", protocol[model].name, signal.name);
+    Note { rule: NoteRule::ModelDependent, text }
 }
 
 fn range_note(

@@ -7,7 +7,9 @@ use super::given::Given;
 use super::transfer::frames;
 use super::value::{Limits, raw_of, typed};
 use super::{Frame, Input, Refusal, decode};
-use crate::model::{AddressPattern, AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set};
+use crate::model::{
+    AddressPattern, AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set, Signal,
+};
 use crate::number::Rational;
 
 /// Where a request goes.
@@ -260,7 +262,7 @@ fn made(
     let id = identifier(protocol, message, layout, mode, target, source)?;
     let mut data = blank_data(layout);
     let (id, signals) = (given.put(protocol, id, &mut data), &given.signals);
-    let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
+    let length = length_typed(message, layout, signals, model);
     put_signals(protocol, message, (layout, length), signals, (model, Limits::Range(model)), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
     let decoded = decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
@@ -362,6 +364,19 @@ pub fn raw_address(message: &Message, address_type: &AddressType, number: Option
             },
         )
     })
+}
+
+/// Returns how many data bytes a frame has with the signals that are given. Those that only some device models have are
+/// there, too, if the chosen one has them.
+pub fn length_typed(
+    message: &Message,
+    layout: &FrameLayout,
+    given: &[(String, String)],
+    model: Option<ModelId>,
+) -> usize {
+    let is_given = |signal: &Signal| given.iter().any(|(name, _)| *name == signal.name);
+    let is_own = |signal: &Signal| !signal.models.is_empty() && model.is_some_and(|model| signal.is_of(model));
+    length_with(message, layout, |signal| is_given(signal) || is_own(signal))
 }
 
 pub fn put_signals(

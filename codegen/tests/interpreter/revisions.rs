@@ -110,3 +110,67 @@ fn a_named_value_keeps_its_name_on_a_model_that_does_not_have_it_and_is_never_as
         assert_eq!(asked, Err(expected.to_owned()));
     }
 }
+
+/// Only the frames of NEW reach its field.
+const LONGER: &str = r#"
+canspec: 1
+protocol: longer
+title: A battery
+document: {title: Made up, version: "1"}
+length: 2
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+addressing: {battery: {request: {sender: 0}, one: {sender: 1}}}
+access: {set: {request: {}, reply: {}, answers: {battery: one}}}
+messages:
+  state:
+    section: "1"
+    match: {command: 2}
+    access: [set]
+    length: [2, 4]
+    fields: {charge: {bytes: 0..1, range: 0..100}, heating: {bytes: 2..3, range: 0..200, models: [NEW]}}
+models: {OLD: {section: "1"}, NEW: {section: "1"}}
+"#;
+
+#[test]
+fn what_the_model_has_is_asked_for_though_others_have_a_shorter_frame() {
+    let battery = written(LONGER);
+    let asked = |name: &str, signals: &[(&str, &str)]| {
+        let model = Some(model(&battery, name));
+        requested(&battery, model, "state", "battery", signals).map_err(|refusal| refusal.0)
+    };
+    let (charge, heating) = (("charge", "84"), ("heating", "96"));
+    assert_eq!(asked("OLD", &[charge]).as_deref(), Ok("004#0054"));
+    assert_eq!(asked("NEW", &[charge, heating]).as_deref(), Ok("004#00540060"));
+    assert_eq!(asked("NEW", &[charge]), Err("state: the signal `heating` is missing".to_owned()));
+    assert_eq!(asked("OLD", &[charge, heating]), Err("state.heating: OLD has no `heating`".to_owned()));
+    assert_eq!(requested(&battery, None, "state", "battery", &[charge]).ok().as_deref(), Some("004#0054"));
+}
+
+#[test]
+fn a_frame_that_is_long_enough_for_what_the_model_does_not_have_gets_a_note() {
+    let battery = written(LONGER);
+    let longer = "model_dependent: OLD has no `heating`, for which the frame is long enough";
+    assert_eq!(notes(&battery, "OLD", "005#00540000"), [longer]);
+    assert_eq!(notes(&battery, "OLD", "005#00540060"), ["model_dependent: OLD has no `heating`"]);
+    assert_eq!(notes(&battery, "OLD", "005#0054"), [""; 0]);
+    assert_eq!(notes(&battery, "NEW", "005#00540000"), [""; 0]);
+}
+
+#[test]
+fn a_hidden_field_comes_back_as_its_blank_bits() {
+    let battery = written(LONGER);
+    for (name, text, shown) in [
+        ("OLD", "005#00540000", &["charge"][..]),
+        ("OLD", "005#00540060", &["charge", "heating"]),
+        ("NEW", "005#00540000", &["charge", "heating"]),
+        ("OLD", "005#0054", &["charge"]),
+    ] {
+        let (model, frame) = (Some(model(&battery, name)), frame(text));
+        let mut decoded = decode(&battery, model, &frame).expect("a frame of the protocol");
+        decoded.hide_lacking(&battery);
+        let content = Content::of(&battery, &decoded);
+        let names: Vec<_> = content.signals.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, shown, "{name} {text}");
+        assert_eq!(encode(&battery, model, &content).map(|made| made.data), Ok(frame.data), "{name} {text}");
+    }
+}

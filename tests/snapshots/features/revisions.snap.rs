@@ -269,11 +269,79 @@ impl Layout for SetLimits {
     }
 }
 
+/// Set charge: `command` 0x003. Section 2.
+/// - [`set`](SET_ACCESS): the module answers (`battery`).
+/// - Request of `V1_2` `006#54`: `charge` 84 %.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SetCharge {
+    /// Charge in %: byte 0, `0..=100`.
+    pub charge_percent: u8,
+    /// Warmth in W: bytes 1..2, only in frames of 3 bytes, `0..=500`, only on `V1_3`.
+    pub warmth_w: Option<u16>,
+}
+
+impl SetCharge {
+    /// The signal `charge`, to read or write it alone, or to ask for its limits.
+    pub const CHARGE: Signal<u8> = Signal::new("charge", Place::byte(0)).unit("%").limits(0, 100);
+    /// The signal `warmth`, to read or write it alone, or to ask for its limits.
+    pub const WARMTH: Signal<u16> = Signal::new("warmth", Place::bytes(1, 2))
+        .unit("W")
+        .limits(0, 500)
+        .lacking(&[(Model::V1_2 as u8, Lack::Bits(0xFFFF, 0x0000))]);
+    /// The access `set`, for filters and blank frames of it.
+    pub const SET: Exchange = SET_ACCESS.of("set_charge").id(Identifier::COMMAND, 0x003).length(1);
+
+    /// Returns the values for a device model. Refuses one that lacks the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
+
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses values outside their limits, other
+    /// addressing modes and undocumented addresses.
+    #[inline(always)]
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::SET.inlined_request_to(route, self)
+    }
+}
+
+impl Within<SetCharge> {
+    /// Builds the request [`set`](SET_ACCESS) with these values. Refuses other addressing modes and
+    /// undocumented addresses.
+    #[inline(always)]
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetCharge>, Error> {
+        SetCharge::SET.inlined_request_within(self.model, route, &self.values)
+    }
+}
+
+impl Layout for SetCharge {
+    const SIGNALS: AnySignals = &[&Self::CHARGE, &Self::WARMTH];
+    const RESERVED: Data = [0x00; 8];
+    const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
+    const LENGTHS: &'static [u8] = &[1, 3];
+
+    #[inline]
+    fn read_some(data: &Data, length: usize) -> Self {
+        Self { charge_percent: Self::CHARGE.get(data), warmth_w: Self::WARMTH.get_some(data, length) }
+    }
+
+    #[inline(always)]
+    fn write_to(&self, payload: &mut Payload) -> bool {
+        payload.end_after(1);
+        if self.warmth_w.is_some() {
+            payload.end_after(3);
+        }
+        payload.put(&Self::CHARGE, self.charge_percent) && payload.put_some(&Self::WARMTH, self.warmth_w)
+    }
+}
+
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
     /// Set limits.
     SetLimits(SetLimits),
+    /// Set charge.
+    SetCharge(SetCharge),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -304,7 +372,6 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
-    const LENGTH: Option<u8> = Some(4);
     const MODES: &'static [Mode] = &[BATTERY_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
@@ -316,22 +383,30 @@ impl Protocol for Message {
     fn recognise(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x002 => frame.both(&SetLimits::SET, Self::SetLimits(frame.values())),
+            0x003 => frame.of_lengths(SetCharge::LENGTHS).both(&SetCharge::SET, Self::SetCharge(frame.values())),
             _ => frame.unknown(),
         }
     }
 
     fn lengths(frame: &Incoming) -> &'static [u8] {
-        if frame.id(Identifier::COMMAND) == 0x002 { &[4] } else { &[] }
+        match frame.id(Identifier::COMMAND) {
+            0x002 => &[4],
+            0x003 => &[1, 3],
+            _ => &[],
+        }
     }
 
     #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SetLimits(message) => task.run(message),
+            Self::SetCharge(message) => task.run(message),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::of::<SetLimits>("set limits", &[("command", 0x002)], &[&SetLimits::SET])];
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::of::<SetLimits>("set limits", &[("command", 0x002)], &[&SetLimits::SET]),
+    Entry::of::<SetCharge>("set charge", &[("command", 0x003)], &[&SetCharge::SET]),
+];

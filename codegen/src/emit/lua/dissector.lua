@@ -248,7 +248,9 @@ local function show_message(frame, decoded, tvb, tree)
   local refused = refusal(decoded)
   local texts = { refused }
   for _, reading in ipairs(refused and {} or decoded.readings) do
-    table.insert(texts, reading.signal.name .. " " .. add_reading(tree, tvb, reading))
+    if not reading.is_hidden then
+      table.insert(texts, reading.signal.name .. " " .. add_reading(tree, tvb, reading))
+    end
   end
   if refused then tree:append_text(", " .. refused) end
   if decoded.reserved then tree:add(known.reserved, tvb(), decoded.reserved) end

@@ -52,7 +52,7 @@ pub fn signal(protocol: &Protocol, message: &Message, signal: &Signal) -> Value 
         .maybe("unit", signal.unit.map(|unit| Value::text(&unit.symbol)));
     let record = limits(meaning(protocol, message, record, signal), signal);
     let rows = protocol.models.ids().filter_map(|model| protocol.lacking(message, signal, model));
-    let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(signal, &known))).collect();
+    let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(message, signal, &known))).collect();
     record.maybe("lacking", (!rows.is_empty()).then(|| Value::map(rows.into_iter())))
 }
 
@@ -89,12 +89,14 @@ fn meaning(protocol: &Protocol, message: &Message, record: Value, signal: &Signa
 }
 
 /// Returns the bits that a device model does not have, what they are there, and the raw values that it does not have.
-fn lacking(signal: &Signal, known: &Lacking) -> Value {
+fn lacking(message: &Message, signal: &Signal, known: &Lacking) -> Value {
+    let is_whole = !signal.is_of(known.model);
     let values = known.values.iter().map(|raw| (wide(*raw, signal.place.width()), Value::flag(true)));
     Value::record()
         .with("mask", Value::unsigned_of_64_bits(known.mask))
         .with("blank", Value::unsigned_of_64_bits(known.blank))
-        .maybe("whole", (!signal.is_of(known.model)).then(|| Value::flag(true)))
+        .maybe("whole", is_whole.then(|| Value::flag(true)))
+        .maybe("longer", (is_whole && message.is_optional(signal)).then(|| Value::flag(true)))
         .maybe("values", (!known.values.is_empty()).then(|| Value::map(values)))
 }
 

@@ -256,15 +256,18 @@ local function on_model(signal, model)
   return signal.on and signal.on[model] or signal
 end
 
--- Says that a device model does not have what bits or their raw value show. It also returns whether the model lacks
--- the signal.
+-- Says that a device model does not have what bits or their raw value show, or that the frame is long enough for. It
+-- also returns whether the model lacks the signal, and whether the bits are blank then.
 local function lack(signal, model, bits, raw)
   local known = signal.lacking and signal.lacking[model]
   if not known then return nil end
   local wide = type(bits) == "number" and UInt64(bits) or bits
   local is_blank = wide:bxor(known.blank):band(known.mask) == UInt64(0)
-  if is_blank and not (known.values and known.values[key(raw)]) then return nil, known.whole end
-  return protocol.models[model] .. " has no such `" .. signal.name .. "`", known.whole
+  local is_hidden = known.whole and is_blank
+  if is_blank and not known.longer and not (known.values and known.values[key(raw)]) then
+    return nil, known.whole, is_hidden
+  end
+  return protocol.models[model] .. " has no such `" .. signal.name .. "`", known.whole, is_hidden
 end
 
 -- Returns what a frame says about a signal: raw, value, name of a special value, rule and text of a
@@ -273,10 +276,11 @@ local function reading(frame, known)
   local signal = on_model(known, frame.model)
   local bits = get(frame, signal.place)
   local raw = signal.signed and signed(bits, signal.place.width) or bits
-  local lacked, is_whole = lack(signal, frame.model, bits, raw)
+  local lacked, is_whole, is_hidden = lack(signal, frame.model, bits, raw)
   local special = signal.specials and signal.specials[key(raw)]
   if special then
-    return { signal = signal, raw = raw, name = special, rule = lacked and "model_dependent", text = lacked }
+    local rule = lacked and "model_dependent"
+    return { signal = signal, raw = raw, name = special, rule = rule, text = lacked, is_hidden = is_hidden }
   end
   local value, rule, text = values[signal.kind](signal, raw, frame)
   local is_number = signal.shown == "integer" or signal.shown == "double"
@@ -284,7 +288,7 @@ local function reading(frame, known)
   if lacked then rule, text = "model_dependent", lacked elseif is_whole then rule, text = nil, nil end
   -- Values of all device models stand in one field.
   if signal ~= known and is_number then value = double(value) end
-  return { signal = signal, raw = raw, value = value, rule = rule, text = text }
+  return { signal = signal, raw = raw, value = value, rule = rule, text = text, is_hidden = is_hidden }
 end
 
 -- Returns what digits say about a text that no place holds. A device model that lacks it has only blank bytes there.
