@@ -17,7 +17,9 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for (known, limit) in protocol.quantities.iter().filter_map(|known| Some((known, protocol.limit_of(known)?))) {
         let documented = documented(protocol, known);
         let problem = beyond(limit, &documented).or_else(|| without_value(protocol, limit, &documented));
-        problem.into_iter().for_each(|problem| diagnostics.push(problem));
+        if let Some(problem) = problem {
+            diagnostics.push(problem);
+        }
     }
     for set in protocol.quantities.iter().filter_map(|known| known.set.as_ref()) {
         let message = &protocol[set.message];

@@ -73,5 +73,7 @@ impl Resolver<'_> {
 fn narrow(content: &mut Message, field: &str, limit: &Limit) {
     let is_of_field = |id: &SignalId| content.field_name(&content[*id]) == field;
     let limited: Vec<_> = content.signals.ids().filter(is_of_field).collect();
-    limited.into_iter().for_each(|id| content.signals[id].limit = Some(limit.clone()));
+    for id in limited {
+        content.signals[id].limit = Some(limit.clone());
+    }
 }
