@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Three bytes reach `warmth`, which V1_2 does not have.
+/// Three bytes reach `warmth`, which `V1_2` does not have.
 const LOG: &str = "\
 (1.0) can0 007#540000
 (1.1) can0 007#540060
