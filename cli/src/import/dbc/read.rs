@@ -5,6 +5,7 @@ use std::path::Path;
 
 use can_dbc::{Dbc, decode_cp1252};
 use can_dbc_pest::{DbcParser, Parser as _, Rule};
+use pest::error::LineColLocation;
 
 use crate::failure::{Failure, shown};
 
@@ -36,8 +37,26 @@ pub fn parse(bytes: Vec<u8>) -> Result<Dbc, Refusal> {
         decode_cp1252(error.as_bytes()).map(Into::into).ok_or("it is neither UTF-8 nor Windows-1252")
     })?;
     let text = text.trim_start_matches('\u{FEFF}');
-    let dbc = Dbc::try_from(text).map_err(|error| Refusal::from(format!("this is no DBC\n{error}").as_str()))?;
+    let dbc = Dbc::try_from(text)
+        .map_err(|error| unreadable(text).unwrap_or_else(|| format!("this is no DBC: {error}").as_str().into()))?;
     impossible_identifier(text).map_or(Ok(dbc), Err)
+}
+
+/// Finds the line that the reader's grammar does not allow.
+fn unreadable(text: &str) -> Option<Refusal> {
+    let (LineColLocation::Pos(place) | LineColLocation::Span(place, _)) =
+        DbcParser::parse(Rule::file, text).err()?.line_col;
+    let line = place.0;
+    let mut before = text.lines().take(line.saturating_sub(1));
+    let found = text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim();
+    let why = match found {
+        "" => "the statement before this line does not end".to_owned(),
+        _ if before.all(|line| line.trim().is_empty()) => {
+            format!("this begins with `{found}`, which is no statement of a DBC")
+        }
+        _ => format!("`{found}` is no statement of a DBC; correct it, or take it out"),
+    };
+    Some(Refusal { line: Some(line), why })
 }
 
 /// Finds a number that is no identifier, because the reader would drop bits of it. The reader's own
@@ -70,5 +89,23 @@ mod tests {
             assert!(refusal.why.starts_with(&format!("{number} is no identifier")), "{}", refusal.why);
         }
         assert_eq!(parse("BO_ 4294967296 a: 8 x\n").expect_err("it is refused").line, None);
+    }
+
+    #[test]
+    fn a_statement_that_no_dbc_has_is_named_with_its_line() {
+        let refusal = |text: &str| parse(text.as_bytes().to_vec()).expect_err("it is refused");
+        let broken = refusal("BU_: x\nBO_ 1 a: 8 x\n SG_ s : 0|8@1+ (1,0 [0|255] \"\" x\n");
+        assert_eq!(broken.line, Some(3));
+        let why = "`SG_ s : 0|8@1+ (1,0 [0|255] \"\" x` is no statement of a DBC";
+        assert!(broken.why.starts_with(why), "{}", broken.why);
+        let unknown = refusal("BU_: x\n\nFOO_ bar;\n");
+        assert_eq!(unknown.line, Some(3));
+        assert!(unknown.why.contains("`FOO_ bar;`"), "{}", unknown.why);
+        let open = refusal("BU_: x\nBO_ 1 a:\n");
+        assert_eq!(open.line, Some(2));
+        assert!(open.why.starts_with("`BO_ 1 a:` is no statement"), "{}", open.why);
+        let other = refusal("\ntime,id,data\n");
+        assert_eq!(other.line, Some(2));
+        assert_eq!(other.why, "this begins with `time,id,data`, which is no statement of a DBC");
     }
 }
