@@ -94,3 +94,34 @@ fn protocol(text: &str) -> Result<String, String> {
         "names are lower-case letters, digits and single `_` between them, and start with a letter".to_owned()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use canspec_codegen::compile;
+    use canspec_codegen::source::Source;
+
+    use super::imported;
+
+    #[test]
+    fn check_does_not_warn_of_what_the_importer_wrote() {
+        let of = |signals: &str, rest: &str| format!("BO_ 1 Long_Name: 8 x\n{signals}BO_ 2 b: 8 x\n{rest}");
+        let plain = " SG_ Speed : 0|16@1+ (1,0) [0|0] \"rpm\" y\n";
+        let limited = " SG_ Speed : 0|16@1+ (0.5,0) [0|100] \"\" y\n SG_ Other : 16|16@1+ (1,0) [0|10] \"V\" y\n";
+        let cycle = "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 1000;\nBA_ \"GenMsgCycleTime\" BO_ 1 100;\n";
+        let special = "VAL_ 1 Speed 65535 \"broken\" ;\n";
+        let more = "BO_ 3 c: 8 x\nBO_ 4 d: 8 x\nBO_ 5 Eee_F: 8 x\n";
+        let cases = [
+            String::new(),
+            of("", ""),
+            of(plain, ""),
+            of(limited, ""),
+            of(" SG_ Speed : 0|16@1+ (1,0) [0|100] \"rpm\" y\n", special),
+            of(limited, &[more, cycle].concat()),
+        ];
+        for text in cases {
+            let spec = imported(text.clone().into_bytes()).expect("the DBC is right");
+            let source = Source::new("a.yaml", spec.clone().into_bytes()).expect("the spec is text");
+            assert_eq!(compile(source).diagnostics.concise(), "", "{text}\n{spec}");
+        }
+    }
+}

@@ -133,7 +133,7 @@ impl<'a> Importer<'a> {
         let title = [&[source.name.as_str()], &long[..]].concat().join(", ");
         let fields = self.fields(source, variant, &name, length)?;
         Some(Message {
-            title: if title.eq_ignore_ascii_case(&name) { String::new() } else { title },
+            title,
             note: one_line(self.index.comment(source.id, None)),
             sender: source.transmitter.as_deref().map(one_line),
             id: identifier(source.id),

@@ -87,6 +87,9 @@ fn number(signal: &Signal, named: &[Named]) -> Result<Translated, String> {
     meaning.keys.extend((scale != Rational::ONE || is_plain).then(|| ("scale", scale.to_string())));
     meaning.keys.extend((offset != Rational::ZERO).then(|| ("offset", offset.to_string())));
     unit(signal, &mut meaning);
+    if is_scaled && signal.unit.trim().is_empty() {
+        meaning.decide.push("the unit, which the DBC does not state".to_owned());
+    }
     meaning.keys.extend(range.map(range_key));
     meaning.keys.extend((!named.is_empty()).then(|| ("values", values(&named))));
     Ok(meaning)

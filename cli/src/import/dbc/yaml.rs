@@ -44,7 +44,8 @@ impl Display for Spec {
                 "\n# DECIDE: the section of each message in the document, and example frames from it\nmessages:"
             )?;
         }
-        self.messages.iter().try_for_each(|message| message.write(self.length, out))
+        self.messages.iter().try_for_each(|message| message.write(self.length, out))?;
+        self.write_allowances(out)
     }
 }
 
@@ -62,6 +63,23 @@ impl Spec {
         )?;
         writeln!(out, "# DECIDE: who is asked, who answers; which messages are requests and replies\naddressing:")?;
         writeln!(out, "  bus: {{one: {{}}}}\n\naccess:\n  report: {{report: {{}}, answers: {{bus: one}}}}")
+    }
+
+    /// Allows what a DBC cannot say, so that `check` warns of the rest.
+    fn write_allowances(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        let has = |test: fn(&Field) -> bool| self.messages.iter().flat_map(|message| &message.fields).any(test);
+        let sections = "a DBC names no sections";
+        let allowed = [
+            ("section", "timing", sections, self.messages.iter().any(|message| message.cycle.is_some())),
+            ("section", "messages", sections, !self.messages.is_empty()),
+            ("no_unit", "messages", "the DBC states no unit", has(Field::is_without_unit)),
+            ("read_only_range", "messages", "the DBC states limits", has(Field::is_limited)),
+        ];
+        let mut allowed = allowed.into_iter().filter(|(.., is_needed)| *is_needed).peekable();
+        if allowed.peek().is_some() {
+            writeln!(out, "\n# DECIDE: take an entry out when the spec says what its reason lacks\nallow:")?;
+        }
+        allowed.try_for_each(|(rule, at, why, _)| writeln!(out, "  - {{rule: {rule}, at: {at}, because: {why}}}"))
     }
 
     fn write_cycles(&self, out: &mut Formatter<'_>) -> fmt::Result {
@@ -120,6 +138,21 @@ impl Message {
 }
 
 impl Field {
+    fn key(&self, name: &str) -> Option<&str> {
+        self.keys.iter().find(|(key, _)| *key == name).map(|(_, value)| value.as_str())
+    }
+
+    /// Tests for a scale or an offset without a word on the unit.
+    fn is_without_unit(&self) -> bool {
+        let is_scaled = self.key("scale").is_some_and(|scale| scale != "1") || self.key("offset").is_some();
+        is_scaled && self.key("unit").or(self.key("title")).is_none()
+    }
+
+    /// Tests for a range that does no more than give notes. Beside special values it tells them apart.
+    fn is_limited(&self) -> bool {
+        self.key("range").is_some() && self.key("values").is_none()
+    }
+
     fn write(&self, indent: &str, key: &str, place: &str, out: &mut Formatter<'_>) -> fmt::Result {
         let keys = self.keys.iter().map(|(key, value)| (*key, value.as_str()));
         let decide = match self.decide.as_slice() {
