@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
-use canspec_codegen::interpret::{Frame, decode};
+use canspec_codegen::interpret::{Decoded, Frame, Value, decode};
 use canspec_codegen::model::{NoteRule, Protocol};
 use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
@@ -14,6 +14,7 @@ use crate::channels::{Channels, Others};
 use crate::columns::{self, Row};
 use crate::failure::{Failure, Finish};
 use crate::input::Input;
+use crate::line::bit_names;
 use crate::log::Reader;
 use crate::output::output;
 use crate::protocols;
@@ -21,9 +22,10 @@ use crate::protocols;
 /// Find out which protocols a log holds.
 ///
 /// Tries each built-in protocol and each given spec on every frame. The one that recognises most frames without a
-/// contradiction stands first. Protocols with the same numbers fit equally well. A contradiction is a note, such as
-/// a value outside its range or a reserved bit. ALONE counts the frames that no other protocol recognises. A
-/// protocol without such frames shares all of them with others, and need not be on the bus.
+/// contradiction stands first. Protocols with the same numbers fit equally well, and the last lines say how many
+/// frames they read differently. A contradiction is a note, such as a value outside its range or a reserved bit.
+/// ALONE counts the frames that no other protocol recognises. A protocol without such frames shares all of them
+/// with others, and need not be on the bus.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml --channel can1 bus.log")]
 pub struct Identify {
@@ -50,12 +52,35 @@ enum Format {
 struct Candidate {
     #[serde(skip)]
     protocol: Protocol,
+    /// How it differs from each tried protocol, in the order of trial.
+    #[serde(skip)]
+    unlike: Vec<Unlike>,
+    /// Its own place in that order.
+    #[serde(skip)]
+    place: usize,
     #[serde(rename = "protocol")]
     name: String,
     recognised: u64,
     share: f64,
     contradicted: u64,
     alone: u64,
+}
+
+/// The frames that two protocols read differently.
+#[derive(Clone, Copy, Default)]
+struct Unlike {
+    count: u64,
+    /// The line of the first one.
+    line: usize,
+}
+
+impl Unlike {
+    fn add(&mut self, line: usize) {
+        self.count += 1;
+        if self.count == 1 {
+            self.line = line;
+        }
+    }
 }
 
 impl Identify {
@@ -67,10 +92,7 @@ impl Identify {
             let entry = reader.read(line.text?)?;
             if let Some(entry) = entry.filter(|entry| self.channels.keep(entry.channel, &mut others)) {
                 frames += 1;
-                let fitting = candidates.iter_mut().filter_map(|candidate| candidate.try_on(&entry.frame));
-                if let [only] = &mut fitting.collect::<Vec<_>>()[..] {
-                    only.alone += 1;
-                }
+                try_all(&mut candidates, &entry.frame, line.number);
             }
             Ok(Ok(()))
         })?;
@@ -91,7 +113,9 @@ impl Identify {
         let choice = protocols::chosen(&[], &self.spec)?;
         let files = choice.specs.iter().map(|path| protocols::load(protocols::chosen_file(&choice, path)?));
         let protocols = files.chain(SPECS.iter().map(protocols::load_built_in));
-        protocols.map(|protocol| protocol.map(Candidate::new)).collect()
+        let protocols = protocols.collect::<Result<Vec<_>, _>>()?;
+        let count = protocols.len();
+        Ok(protocols.into_iter().enumerate().map(|(place, known)| Candidate::new(known, place, count)).collect())
     }
 
     fn write(&self, candidates: &[Candidate]) -> io::Result<()> {
@@ -105,11 +129,7 @@ impl Identify {
                     "TITLE",
                     &rows,
                 )?;
-                let best = candidates.chunk_by(|one, next| one.fit() == next.fit()).next().unwrap_or_default();
-                if best.len() > 1 {
-                    let names: Vec<_> = best.iter().map(|candidate| candidate.name.as_str()).collect();
-                    writeln!(out, "\n{} fit equally well", names.join(", "))?;
-                }
+                write_equals(&mut out, candidates)?;
             }
             Format::Jsonl => {
                 for candidate in candidates {
@@ -122,17 +142,68 @@ impl Identify {
     }
 }
 
+/// Counts a frame for each protocol that recognises it, and notes which ones read it differently.
+fn try_all(candidates: &mut [Candidate], frame: &Frame, line: usize) {
+    let readings: Vec<_> = candidates.iter_mut().map(|candidate| candidate.try_on(frame)).collect();
+    if readings.iter().flatten().count() == 1 {
+        candidates.iter_mut().zip(&readings).for_each(|(known, own)| known.alone += u64::from(own.is_some()));
+    }
+    for (candidate, own) in candidates.iter_mut().zip(&readings) {
+        let others = candidate.unlike.iter_mut().zip(&readings).filter(|(_, other)| *other != own);
+        others.for_each(|(unlike, _)| unlike.add(line));
+    }
+}
+
+/// Says how protocols differ that fit equally well.
+fn write_equals(out: &mut impl Write, candidates: &[Candidate]) -> io::Result<()> {
+    let best = candidates.chunk_by(|one, next| one.fit() == next.fit()).next().unwrap_or_default();
+    let [first, others @ ..] = best else { return Ok(()) };
+    if others.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<_> = best.iter().map(|candidate| candidate.name.as_str()).collect();
+    writeln!(out, "\n{} fit equally well; TITLE says what their devices are", names.join(", "))?;
+    others.iter().try_for_each(|other| match other.unlike[first.place] {
+        Unlike { count: 0, .. } => {
+            writeln!(out, "{} reads the same messages and values as {} in this log", other.name, first.name)
+        }
+        Unlike { count, line } => {
+            let frames = if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") };
+            writeln!(out, "{} reads {frames} unlike {}, the first in line {line}", other.name, first.name)
+        }
+    })
+}
+
+/// Returns the message of a frame and its values as a text.
+fn reading(protocol: &Protocol, decoded: &Decoded) -> String {
+    let content = decoded.content(protocol);
+    let values = decoded.signals.iter().map(|read| {
+        let signal = &content[read.signal];
+        let unit = signal.unit.as_ref().map_or("", |unit| &unit.symbol);
+        let value = match &read.value {
+            Value::None => format!("raw {}", read.bits),
+            Value::Status { set, unknown } => {
+                format!("{:?} {unknown}", bit_names(protocol, signal, *set).collect::<Vec<_>>())
+            }
+            known @ (Value::Integer(_) | Value::Number(_) | Value::Name(_) | Value::Text(_)) => format!("{known:?}"),
+        };
+        format!("{} {value} {unit}", signal.name)
+    });
+    [format!("{} {}", content.name, decoded.kind.name())].into_iter().chain(values).collect::<Vec<_>>().join("\n")
+}
+
 impl Candidate {
-    fn new(protocol: Protocol) -> Self {
-        Self { name: protocol.name.clone(), protocol, recognised: 0, share: 0.0, contradicted: 0, alone: 0 }
+    fn new(protocol: Protocol, place: usize, count: usize) -> Self {
+        let (name, unlike) = (protocol.name.clone(), vec![Unlike::default(); count]);
+        Self { name, protocol, unlike, place, recognised: 0, share: 0.0, contradicted: 0, alone: 0 }
     }
 
-    /// Counts a frame, and returns itself if it recognises the frame.
-    fn try_on(&mut self, frame: &Frame) -> Option<&mut Self> {
+    /// Counts a frame, and returns what it says if the protocol recognises it.
+    fn try_on(&mut self, frame: &Frame) -> Option<String> {
         let decoded = decode(&self.protocol, None, frame).ok()?;
         self.recognised += 1;
         self.contradicted += u64::from(decoded.notes.iter().any(|note| contradicts(note.rule)));
-        Some(self)
+        Some(reading(&self.protocol, &decoded))
     }
 
     /// Returns the frames without a contradiction, then all that are recognised.

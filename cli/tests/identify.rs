@@ -48,3 +48,22 @@ fn frames_that_two_protocols_share_count_as_alone_for_neither() {
     assert_eq!((infy_alone, gcp_alone, mxr_alone), (infy - gcp, 0, mxr));
     assert!(infy_alone > 0 && gcp > 0 && mxr > 0, "{text}");
 }
+
+#[test]
+fn protocols_that_fit_equally_well_are_told_apart_by_what_they_read() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let log = folder.path().join("bus.log");
+    let said = |frames: &[&str]| {
+        fs::write(&log, frames.join("\n")).expect("the folder can be written");
+        let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+        let output = canspec.arg("identify").arg(&log).output().expect("it starts");
+        String::from_utf8(output.stdout).expect("it is text")
+    };
+    let shared = "0283F000#43FA000040600000";
+    let equal = said(&[shared, shared]);
+    assert!(equal.contains("infy reads the same messages and values as gcp in this log"), "{equal}");
+    // PHOENIX CONTACT's document has an interval beside the switch for walk-in mode, INFY's has none.
+    let different = said(&[shared, "029300F0#0000000000000000", shared, "02933FF0#0100000000000000"]);
+    assert!(different.contains("infy reads 2 frames unlike gcp, the first in line 2"), "{different}");
+    assert!(!different.contains("same messages"), "{different}");
+}
