@@ -60,6 +60,35 @@ fn every_call_succeeds_in_the_crate() {
     assert!(read(&copy.path().join("src/winch.rs")).contains("pub struct Run {"));
 }
 
+#[test]
+fn a_binary_with_public_modules_of_generated_code_gets_no_warning() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let source = folder.path().join("src");
+    for spec in ["specs/infy.yaml", "specs/gcp.yaml"] {
+        let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+        let done = canspec.arg("compile").arg(root().join(spec)).arg("--out").arg(&source).status();
+        assert!(done.expect("the command starts").success(), "{spec}");
+    }
+    let runtime = root().join("runtime").canonicalize().expect("the runtime has a folder");
+    let manifest = format!(
+        "[package]\nname = \"winding\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\
+         [dependencies]\ncanspec-runtime = {{ path = {runtime:?} }}\n[workspace]\n"
+    );
+    fs::write(folder.path().join("Cargo.toml"), manifest).expect("the folder can be written");
+    for (visibility, is_quiet) in [("pub ", true), ("", false)] {
+        let main = format!(
+            "{visibility}mod gcp;\n{visibility}mod infy;\n\n\
+             fn main() {{\n    println!(\"{{}} {{}}\", gcp::BIT_RATES[0], infy::BIT_RATES[0]);\n}}\n"
+        );
+        fs::write(source.join("main.rs"), main).expect("the folder can be written");
+        let mut cargo = Command::new(env!("CARGO"));
+        let call = cargo.args(["check", "--quiet", "--offline", "--target-dir"]).arg(env!("CARGO_TARGET_TMPDIR"));
+        let done = call.current_dir(folder.path()).output().expect("cargo starts");
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        assert_eq!(done.stderr.is_empty(), is_quiet, "{}", String::from_utf8_lossy(&done.stderr));
+    }
+}
+
 /// Returns language and text of each block of a page; of the README those about a crate of one's own.
 fn blocks(page: &str) -> Vec<(String, String)> {
     let text = read(&root().join(page));
