@@ -198,8 +198,8 @@ fn room(name: &str, place: SelectorPlace, greatest: u64, identifier: &Identifier
         SelectorPlace::Identifier(field) if !identifier.extended => {
             let width = identifier.fields[field].width;
             format!(
-                "`{name}` has {width} of the 11 bits of this protocol's identifiers: write {numbers}; \
-                 if they have 29 bits, say so in `identifier`, as in `{name}: {{bits: 28..0}}`"
+                "`{name}` has {width} of the identifier's 11 bits: write {numbers}; \
+                 for 29 bits, write `{name}: {{bits: 28..0}}` in `identifier`"
             )
         }
         SelectorPlace::Identifier(_) | SelectorPlace::Payload(_) => format!("write {numbers}"),

@@ -43,7 +43,7 @@ struct Reply {
 /// A switch-on that is held after a set-point.
 #[derive(Clone, Copy)]
 struct Order {
-    /// Of whom the first is held.
+    /// Who gets the first one.
     target: To,
     first: Ticket,
     second: Ticket,
