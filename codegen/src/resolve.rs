@@ -63,7 +63,8 @@ pub fn resolve(
 ) -> Option<Protocol> {
     let with_frames = (!spec.transports.is_empty()).then(|| transports::expanded(spec));
     let spec = with_frames.as_ref().unwrap_or(spec);
-    Resolver { spec, rules, diagnostics, tables: Tables::default() }.protocol(file)
+    let widest_uses = types::widest_uses(spec);
+    Resolver { spec, rules, diagnostics, widest_uses, tables: Tables::default() }.protocol(file)
 }
 
 /// The state of the stage.
@@ -71,6 +72,8 @@ struct Resolver<'a> {
     spec: &'a ast::Spec,
     rules: &'a [&'static Rule],
     diagnostics: &'a mut Diagnostics,
+    /// How many bits the widest field of each type has.
+    widest_uses: HashMap<&'a str, u8>,
     tables: Tables,
 }
 
@@ -81,7 +84,11 @@ struct Tables {
     /// The selectors that the header declares.
     header: Vec<SelectorId>,
     enumerations: Table<EnumerationId, model::Enumeration>,
+    /// Named values by their name, and by where they are written.
+    enumerations_made: HashMap<(String, Path), EnumerationId>,
     status_words: Table<StatusWordId, model::StatusWord>,
+    /// Status words, in the same way.
+    status_words_made: HashMap<(String, Path), StatusWordId>,
     /// Where the spec says how wide the widest place of each status word is.
     widest_words: Table<StatusWordId, At>,
     /// The bits that are named by their byte, each in all words that have it.

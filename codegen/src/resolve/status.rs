@@ -41,8 +41,7 @@ impl Resolver<'_> {
     pub fn status_word(&mut self, merged: &Merged, otherwise: &str, place: Place, doc: &Doc) -> StatusWordId {
         self.keep_bits_by_byte(merged, place);
         let (name, source) = self.type_name(merged, Key::Status, otherwise);
-        let made = |known: &StatusWord| known.name == name && known.doc.path == source;
-        if let Some(index) = self.tables.status_words.position(made) {
+        if let Some(&index) = self.tables.status_words_made.get(&(name.clone(), source.clone())) {
             if place.width() > self.tables.status_words[index].width {
                 self.tables.status_words[index].width = place.width();
                 self.tables.widest_words[index] = self.place_of_word(merged);
@@ -55,7 +54,10 @@ impl Resolver<'_> {
         bits.sort_by_key(|bit| bit.bit);
         let at = self.place_of_word(merged);
         self.tables.widest_words.push(at);
-        self.tables.status_words.push(StatusWord { name, doc, width: place.width(), bits })
+        let origin = (name.clone(), doc.path.clone());
+        let made = self.tables.status_words.push(StatusWord { name, doc, width: place.width(), bits });
+        self.tables.status_words_made.insert(origin, made);
+        made
     }
 
     /// Returns where the spec says how wide a word is.

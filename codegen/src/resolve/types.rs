@@ -160,15 +160,14 @@ impl Resolver<'_> {
         }
         let (name, source) = self.type_name(merged, Key::Values, otherwise);
         self.check_beside_values(merged, &source);
-        let made = |known: &Enumeration| known.name == name && known.doc.path == source;
-        if let Some(index) = self.tables.enumerations.position(made) {
+        if let Some(&index) = self.tables.enumerations_made.get(&(name.clone(), source.clone())) {
             self.check_same_width(merged, width, index);
             let known = &mut self.tables.enumerations[index];
             known.width = known.width.max(width);
             return Some(index);
         }
         let at = merged.path(self.diagnostics, Key::Values);
-        let widest = self.widest_use(&name).max(width);
+        let widest = self.widest_uses.get(name.as_str()).map_or(width, |widest| width.max(*widest));
         if widest > width && self.check_room(merged, &name, width).is_none() {
             self.values(&at, &merged.field.values, widest, Numeral::Unsigned);
             return None;
@@ -178,7 +177,10 @@ impl Resolver<'_> {
         let has_absent = absent.is_some();
         values.extend(absent);
         let doc = self.type_doc(&name, &source, doc);
-        Some(self.tables.enumerations.push(Enumeration { name, doc, width, values, has_absent }))
+        let origin = (name.clone(), doc.path.clone());
+        let made = self.tables.enumerations.push(Enumeration { name, doc, width, values, has_absent });
+        self.tables.enumerations_made.insert(origin, made);
+        Some(made)
     }
 
     /// Tests that a field has room for the values of its type, which other fields have.
@@ -196,19 +198,6 @@ impl Resolver<'_> {
             "other fields of the type have more bits; correct the place",
         );
         None
-    }
-
-    /// Returns the greatest number of bits of a field that names a type, as far as it is written plainly.
-    fn widest_use(&self, name: &str) -> u8 {
-        let mut open: Vec<&Field> = self.spec.messages.values().flat_map(|message| message.fields.values()).collect();
-        let mut widest = 0;
-        while let Some(field) = open.pop() {
-            open.extend(field.fields.values());
-            if field.types.0.iter().any(|known| known == name) {
-                widest = widest.max(written_width(field).unwrap_or(0));
-            }
-        }
-        widest
     }
 
     /// Tests that named values with one for "not available" have one width, since it has all ones.
@@ -295,6 +284,21 @@ impl Resolver<'_> {
             );
         }
     }
+}
+
+/// Returns the greatest number of bits of a field that names each type, as far as it is written plainly.
+pub fn widest_uses(spec: &ast::Spec) -> HashMap<&str, u8> {
+    let mut open: Vec<&Field> = spec.messages.values().flat_map(|message| message.fields.values()).collect();
+    let mut widest = HashMap::new();
+    while let Some(field) = open.pop() {
+        open.extend(field.fields.values());
+        let width = written_width(field).unwrap_or(0);
+        for name in &field.types.0 {
+            let known = widest.entry(name.as_str()).or_insert(width);
+            *known = width.max(*known);
+        }
+    }
+    widest
 }
 
 /// Returns the number of bits of a field, if it is written plainly and at most 64.
