@@ -146,17 +146,19 @@ pub fn are_alike(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) ->
 
 /// Tests whether the constants of two frames want the same of each data bit, whatever the fields are called.
 pub fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
-    let bits = |frame: &FrameLayout| {
-        let constants = frame.constants.iter().filter_map(|constant| Some((constant.in_payload()?.0, constant)));
-        constants.fold((0, 0), |(mask, bits), (place, constant)| {
-            let [mut counting, mut data] = [[0; 8]; 2];
-            place.put(&mut counting, place.max() & !constant.open);
-            place.put(&mut data, constant.value);
-            (mask | u64::from_be_bytes(counting), bits | u64::from_be_bytes(data))
-        })
-    };
-    let ((mask, value), (others, wanted)) = (bits(one), bits(other));
+    let ((mask, value), (others, wanted)) = (fixed(one), fixed(other));
     mask & others & (value ^ wanted) == 0
+}
+
+/// Returns the data bits that the constants of a frame fix, and what they are there.
+pub fn fixed(frame: &FrameLayout) -> (u64, u64) {
+    let constants = frame.constants.iter().filter_map(|constant| Some((constant.in_payload()?.0, constant)));
+    constants.fold((0, 0), |(mask, bits), (place, constant)| {
+        let [mut counting, mut data] = [[0; 8]; 2];
+        place.put(&mut counting, place.max() & !constant.open);
+        place.put(&mut data, constant.value);
+        (mask | u64::from_be_bytes(counting), bits | u64::from_be_bytes(data))
+    })
 }
 
 /// Tests whether one identifier fits both patterns.

@@ -11,6 +11,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for (id, transport) in protocol.transports.entries() {
         let carried = protocol.long_messages.iter().filter(|long| long.transport() == Some(id));
         let carried: Vec<&LongMessage> = carried.collect();
+        let mut heads = isotp::Heads::default();
         for (index, long) in carried.iter().enumerate() {
             let earlier = &carried[..index];
             if let Some(flaw) = partial(long) {
@@ -18,7 +19,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             }
             match &transport.standard {
                 Standard::J1939(groups) => j1939::check(protocol, groups, long, earlier, diagnostics),
-                Standard::Isotp(_) => isotp::check(protocol, long, earlier, diagnostics),
+                Standard::Isotp(_) => isotp::check(protocol, long, &mut heads, diagnostics),
             }
         }
     }

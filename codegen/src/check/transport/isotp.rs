@@ -1,22 +1,87 @@
 //! What ISO-TP asks of its messages: the first six bytes show which one it is, and one node answers its first frame.
 
-use crate::check::ambiguous::agree;
+use indexmap::IndexMap;
+
+use crate::check::ambiguous::fixed;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{FrameLayout, LongMessage, Protocol, Signal, Travel, Who};
+use crate::model::{FieldId, FrameLayout, LongMessage, Protocol, Side, Signal, Travel, Who};
 use crate::resolve::rules;
 
 /// Data bytes that a first frame has, and that a single frame has.
 const FIRST: usize = 6;
 const SINGLE: usize = 7;
 
-/// Tests a message, and those of the same transport before it.
-pub fn check(protocol: &Protocol, long: &LongMessage, earlier: &[&LongMessage], diagnostics: &mut Diagnostics) {
+/// Tests a message, and those of the same transport before it, which have these heads.
+pub fn check<'a>(protocol: &Protocol, long: &'a LongMessage, earlier: &mut Heads<'a>, diagnostics: &mut Diagnostics) {
     if let Some(flaw) = long.frames.iter().find_map(|layout| flaw(protocol, long, layout)) {
         diagnostics.push(flaw);
     }
-    if let Some(other) = earlier.iter().find(|other| are_alike(long, other)) {
+    if let Some(other) = earlier.alike(long) {
         diagnostics.push(alike(long, other));
     }
+    earlier.add(long);
+}
+
+/// What the frames of messages show, as far as it tells messages apart. Frames that show the same bits are found at
+/// once, however many there are.
+#[derive(Default)]
+pub struct Heads<'a> {
+    messages: Vec<&'a LongMessage>,
+    /// By what the frames show: the data bits, each with the place of its first message.
+    shapes: IndexMap<Shape, IndexMap<u64, usize>>,
+}
+
+/// What all frames of a kind show.
+#[derive(PartialEq, Eq, Hash)]
+struct Shape {
+    sender: Side,
+    identifier: Vec<(FieldId, u32)>,
+    /// The data bits that constants fix.
+    mask: u64,
+}
+
+impl Shape {
+    /// Returns the shape of a frame, and its data bits.
+    fn of(layout: &FrameLayout) -> (Self, u64) {
+        let (mask, bits) = fixed(layout);
+        (Self { sender: layout.sender, identifier: layout.identifier().collect(), mask }, bits & mask)
+    }
+
+    /// Tests whether one identifier fits both.
+    fn fits(&self, other: &Self) -> bool {
+        let differs =
+            |(field, value): &(_, _)| other.identifier.iter().any(|known| known.0 == *field && known.1 != *value);
+        self.sender == other.sender && !self.identifier.iter().any(differs)
+    }
+}
+
+impl<'a> Heads<'a> {
+    fn add(&mut self, long: &'a LongMessage) {
+        for layout in &long.frames {
+            let (shape, bits) = Shape::of(layout);
+            self.shapes.entry(shape).or_default().entry(bits).or_insert(self.messages.len());
+        }
+        self.messages.push(long);
+    }
+
+    /// Finds the first message whose data can be those of another one, too.
+    fn alike(&self, long: &LongMessage) -> Option<&'a LongMessage> {
+        let places = long.frames.iter().filter_map(|layout| {
+            let (own, bits) = Shape::of(layout);
+            let fitting = self.shapes.iter().filter(|(shape, _)| shape.fits(&own));
+            fitting.filter_map(|(shape, known)| first_alike(known, bits, own.mask, shape.mask)).min()
+        });
+        places.min().map(|place| self.messages[place])
+    }
+}
+
+/// Finds the first message whose data bits are equal where both are fixed.
+fn first_alike(known: &IndexMap<u64, usize>, bits: u64, mask: u64, others: u64) -> Option<usize> {
+    if mask == others {
+        return known.get(&bits).copied();
+    }
+    let alike = known.iter().filter(|(other, _)| mask & others & (bits ^ *other) == 0);
+    alike.map(|(_, place)| *place).min()
 }
 
 /// Finds what is wrong with one of the ways in which a message is sent.
@@ -67,17 +132,4 @@ fn alike(long: &LongMessage, other: &LongMessage) -> Diagnostic {
     problem
         .other(other.content.doc.path.at_key(), "the other one")
         .help("let a constant in the first six bytes differ, in `match`, the access or a field")
-}
-
-/// Tests whether the same data can be of either message.
-fn are_alike(one: &LongMessage, other: &LongMessage) -> bool {
-    one.frames.iter().any(|frame| other.frames.iter().any(|known| fit_both(frame, known)))
-}
-
-fn fit_both(one: &FrameLayout, other: &FrameLayout) -> bool {
-    let differs = one.identifier().any(|known| {
-        let mut others = other.identifier();
-        others.any(|(field, value)| field == known.0 && value != known.1)
-    });
-    one.sender == other.sender && !differs && agree(one, other)
 }
