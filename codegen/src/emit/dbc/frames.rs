@@ -1,8 +1,9 @@
 //! Finds the identifiers, and the frames that share one.
 
+use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
 
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use super::Dropped;
 use super::file::DbcMessage;
@@ -110,9 +111,9 @@ pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<DbcMessage>
 }
 
 fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
-    let mut candidates: Vec<Candidate> = Vec::new();
+    let (mut candidates, mut layouts): (Vec<Candidate>, _) = (Vec::new(), HashSet::new());
     for sent in &sent {
-        if !candidates.iter().any(|candidate| candidate.id == sent.id_of_layout) {
+        if layouts.insert(sent.id_of_layout) {
             candidates.push(Candidate { id: sent.id_of_layout, message: sent.message, layout: sent.layout });
         }
     }
@@ -136,9 +137,11 @@ struct Lost {
 /// Returns what a frame lacks.
 fn lost(protocol: &Protocol, group: &Group) -> Vec<Lost> {
     let length = group.sent[0].message.longest();
+    let kept: HashSet<u32> = group.sent.iter().map(|sent| sent.id).collect();
+    let shared = group.lost.iter().filter(|lost| kept.contains(&lost.id));
+    let shared: HashSet<FrameId> = shared.map(|lost| lost.id_of_layout).collect();
     let dropped = |candidate: &Candidate, missing: String, why: String| {
-        let mut lost = group.lost.iter().filter(|sent| sent.id_of_layout == candidate.id);
-        let has_own_identifier = lost.all(|lost| group.sent.iter().all(|sent| sent.id != lost.id));
+        let has_own_identifier = !shared.contains(&candidate.id);
         Lost { missing, why, has_own_identifier }
     };
     let other =
@@ -218,23 +221,18 @@ fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
 
 /// Says which messages a frame carries, in which modes.
 fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    let mut modes: Vec<&str> = Vec::new();
+    let mut lines: IndexSet<String> = IndexSet::new();
+    let mut modes: IndexSet<&str> = IndexSet::new();
     for sent in group {
         let text = remarks(&sent.message.doc);
         let space = if text.is_empty() { "" } else { ": " };
         let how = how(protocol, sent.layout);
-        let line = format!("{} ({how}){space}{text}", sent.message.name);
-        if !lines.contains(&line) {
-            lines.push(line);
-        }
-        let mode = protocol[sent.mode].name.as_str();
-        if !modes.contains(&mode) {
-            modes.push(mode);
-        }
+        lines.insert(format!("{} ({how}){space}{text}", sent.message.name));
+        modes.insert(&protocol[sent.mode].name);
     }
-    lines.push(format!("Addressing: {}", modes.join(", ")));
-    lines.join("\n")
+    let modes: Vec<&str> = modes.into_iter().collect();
+    let addressing = format!("Addressing: {}", modes.join(", "));
+    lines.into_iter().chain([addressing]).collect::<Vec<_>>().join("\n")
 }
 
 /// Names each group after its message, kind and node. If that is ambiguous, it adds the mode or the
@@ -246,14 +244,22 @@ fn names(protocol: &Protocol, groups: &[Group]) -> Vec<String> {
         let mode = common(&group.sent, |sent| sent.mode).map(|mode| protocol[mode].name.clone());
         plain.push((format!("{message}_{}", group.sent[0].layout.kind.name()), mode));
     }
+    let mut modes: HashMap<&str, HashSet<Option<&str>>> = HashMap::new();
+    for (name, mode) in &plain {
+        modes.entry(name).or_default().insert(mode.as_deref());
+    }
     let mut names = Vec::new();
     for (group, (name, mode)) in groups.iter().zip(&plain) {
-        let is_sent_otherwise = plain.iter().any(|(other, its)| other == name && its != mode);
+        let is_sent_otherwise = modes[name.as_str()].len() > 1;
         let mode = mode.clone().filter(|_| is_sent_otherwise);
         let node = common(&group.sent, |sent| sent.node).flatten().map(|node| node.to_string());
         names.push([Some(name.clone()), mode, node].into_iter().flatten().collect::<Vec<_>>().join("_"));
     }
-    let is_single = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    for name in &names {
+        *counts.entry(name).or_default() += 1;
+    }
+    let is_single = |name: &String| counts[name.as_str()] == 1;
     let numbered = names
         .iter()
         .zip(groups)
