@@ -105,6 +105,20 @@ fn a_message_of_very_many_fields_is_refused() {
 }
 
 #[test]
+fn limits_of_very_many_models_on_very_many_fields_are_refused() {
+    let models = lines(256, |number| format!("  M{number}: {{types: {{volts: {{range: 0..{}}}}}}}\n", 1 + number));
+    let fields = lines(258, |number| {
+        format!("  m{number}: {{access: [read], fields: {{first: {{bytes: 0..1, type: volts}}}}}}\n")
+    });
+    let spec = format!("{WHOLE}types: {{volts: {{unit: V}}}}\nmodels:\n{models}messages:\n{fields}");
+    let found = compile(source(&spec)).diagnostics.concise();
+    let found: Vec<_> = found.lines().filter(|line| line.contains("error[model_range]")).collect();
+    // 256 models limit 256 fields each. Seven lines stand above, then `types`, `models` and 256 of them, and `messages`.
+    let text = "fields have more than 65536 limits of device models from here on";
+    assert_eq!(found, [format!("mini.yaml:523:35: error[model_range]: {text}")]);
+}
+
+#[test]
 fn an_error_around_deeply_nested_fields_lets_examples_name_them() {
     let inner = lines(25, |level| format!("a{level}: {{bits: 0, fields: {{"));
     let fields = format!("{inner}last: {{bits: 0}}{}", "}}".repeat(25));
