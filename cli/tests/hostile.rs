@@ -209,6 +209,33 @@ fn what_is_no_file_is_refused_by_its_name() -> Result {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_pipe_or_a_device_as_a_base_is_refused_and_not_waited_for() -> Result {
+    let folder = tempfile::tempdir()?;
+    let base = folder.path().join("base.yaml");
+    let derived = folder.path().join("derived.yaml");
+    fs::write(&derived, "based_on: base\n")?;
+    let refused = |what: &str| -> Result {
+        let mut check = Command::new(env!("CARGO_BIN_EXE_canspec"));
+        let check = check
+            .args(["check", "--message-format", "short"])
+            .arg(&derived)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()?;
+        let said = String::from_utf8(check.wait_with_output()?.stderr)?;
+        let first = said.lines().next().unwrap_or_default();
+        assert_eq!(first, format!("{}: error[file]: this is a pipe or a device, not a spec", base.display()), "{what}");
+        fs::remove_file(&base)?;
+        Ok(())
+    };
+    assert!(Command::new("mkfifo").arg(&base).status()?.success());
+    refused("a pipe that nobody writes to")?;
+    std::os::unix::fs::symlink("/dev/null", &base)?;
+    refused("a link to a device")
+}
+
+#[test]
 #[cfg(target_os = "linux")]
 fn a_file_that_cannot_be_read_is_refused_by_its_name() -> Result {
     assert!(complaint(Path::new("/proc/self/mem"))?.starts_with(": error[file]: "));

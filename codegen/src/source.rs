@@ -3,7 +3,7 @@
 pub(crate) mod rules;
 pub(crate) mod text;
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -56,6 +56,16 @@ impl Source {
             Ok(bytes) => Self::new(name, bytes).map(|source| source.at_path(path)),
             Err(error) => Err(unreadable(&name, &error)),
         }
+    }
+
+    /// Reads a file that another one names. It may be a pipe, for which nobody would wait, or a device.
+    pub(crate) fn read_named(path: &Path) -> Result<Self, Diagnostics> {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            let problem = Diagnostic::error(&rules::FILE, At::File, "this is a pipe or a device, not a spec");
+            let help = "put a file in its place, or take `based_on` out of the spec that names it";
+            return Err(refused(&path.display().to_string(), String::new(), problem.help(help)));
+        }
+        Self::read(path)
     }
 
     fn forbidden_characters(&self) -> Vec<Diagnostic> {
