@@ -3,7 +3,7 @@
 mod ahead;
 mod assemblies;
 mod choice;
-mod rows;
+pub mod rows;
 mod summary;
 
 use std::io::{self, BufWriter, Write};
@@ -356,7 +356,7 @@ impl Printer {
         match self {
             Self::Text(table) => table.write(out, kept, outcome),
             Self::Jsonl => line::write(out, kept, outcome),
-            Self::Csv(rows) => rows.write(out, outcome),
+            Self::Csv(rows) => rows.write(out, kept, outcome),
             Self::Summary { counts, .. } => counts.count(outcome),
         }
     }

@@ -98,6 +98,7 @@ mod tests {
     use canspec_specs::SPECS;
 
     use super::*;
+    use crate::decode::rows::Rows;
     use crate::table::Table;
     use crate::{line, protocols};
 
@@ -137,6 +138,20 @@ mod tests {
                 one.write(&mut row, &mut kept, outcome);
                 other.write(&mut expected, &mut Kept::default(), outcome);
                 assert_eq!(String::from_utf8(row), String::from_utf8(expected));
+            }
+        });
+    }
+
+    #[test]
+    fn rows_of_csv_are_written_alike_whatever_came_before_them() {
+        each_outcome(|_| {
+            let mut kept = Kept::default();
+            let [mut one, mut other] = [(); 2].map(|()| Rows::default());
+            move |outcome| {
+                let [mut rows, mut expected] = [Vec::new(), Vec::new()];
+                one.write(&mut rows, &mut kept, outcome);
+                other.write(&mut expected, &mut Kept::default(), outcome);
+                assert_eq!(String::from_utf8(rows), String::from_utf8(expected));
             }
         });
     }

@@ -290,7 +290,7 @@ fn unit(text: &mut Vec<u8>, (signal, reading): Read) {
 }
 
 /// Adds texts one behind the other.
-fn push<const N: usize>(text: &mut Vec<u8>, parts: [&str; N]) {
+pub fn push<const N: usize>(text: &mut Vec<u8>, parts: [&str; N]) {
     for part in parts {
         text.extend_from_slice(part.as_bytes());
     }
