@@ -2,6 +2,7 @@
 
 use canspec_codegen::interpret::{Assembled, Assembly, Decoded, Taken};
 use canspec_codegen::model::Protocol;
+use indexmap::IndexMap;
 
 use crate::capture::nanoseconds;
 use crate::log::Entry;
@@ -16,14 +17,10 @@ pub struct Mark {
 
 /// The parts that came so far, by protocol and channel.
 #[derive(Clone, Default, PartialEq)]
-pub struct Assemblies(Vec<Bus>);
+pub struct Assemblies(IndexMap<Bus, Assembly<Mark>>);
 
-#[derive(Clone, PartialEq)]
-struct Bus {
-    protocol: String,
-    channel: Option<String>,
-    assembly: Assembly<Mark>,
-}
+/// The name of a protocol, and a channel.
+type Bus = (String, Option<String>);
 
 impl Assemblies {
     /// Takes a frame of the log.
@@ -37,25 +34,20 @@ impl Assemblies {
         if protocol.long_messages.is_empty() {
             return Taken { is_part: false, ended: Vec::new() };
         }
-        let is_its = |bus: &Bus| bus.protocol == protocol.name && bus.channel.as_deref() == entry.channel;
-        let place = self.0.iter().position(is_its).unwrap_or_else(|| {
-            let channel = entry.channel.map(str::to_owned);
-            self.0.push(Bus { protocol: protocol.name.clone(), channel, assembly: Assembly::default() });
-            self.0.len() - 1
-        });
+        let assembly = self.0.entry((protocol.name.clone(), entry.channel.map(str::to_owned))).or_default();
         let mark = Mark { line, time: entry.time.as_deref().map(str::to_owned) };
         let now = entry.time.as_deref().filter(|_| has_silence(protocol)).and_then(nanoseconds);
-        self.0[place].assembly.take_at(now, (protocol, model), mark, &entry.frame, decoded)
+        assembly.take_at(now, (protocol, model), mark, &entry.frame, decoded)
     }
 
     /// Ends all messages, each with its device and its channel.
     pub fn finish<'a>(&mut self, devices: &[Device<'a>]) -> Vec<(&'a Protocol, Option<String>, Assembled<Mark>)> {
         let mut ended = Vec::new();
-        for bus in &mut self.0 {
-            let device = devices.iter().find(|(protocol, _)| protocol.name == bus.protocol);
+        for ((name, channel), assembly) in &mut self.0 {
+            let device = devices.iter().find(|(protocol, _)| protocol.name == *name);
             let Some((protocol, model)) = device else { continue };
-            let whole = bus.assembly.finish(protocol, *model).into_iter();
-            ended.extend(whole.map(|whole| (*protocol, bus.channel.clone(), whole)));
+            let whole = assembly.finish(protocol, *model).into_iter();
+            ended.extend(whole.map(|whole| (*protocol, channel.clone(), whole)));
         }
         ended
     }

@@ -1,13 +1,18 @@
 //! Puts the parts of long messages together, for many devices at a time.
 
+mod begun;
+
+use std::collections::HashMap;
 use std::time::Duration;
+
+use begun::{Begun, Link};
 
 use super::long::{Joined, in_bytes};
 use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
-    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved,
-    SelectorPlace, Side, SignalId,
+    AddressTypeId, Kind, LongMessage, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved, SelectorPlace, Side,
+    SignalId,
 };
 
 /// The parts that came so far. `M` is what the caller remembers of each frame.
@@ -18,42 +23,33 @@ use crate::model::{
 /// comes from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
-    transfers: Vec<Transfer<M>>,
+    begun: Begun<M>,
     by_transport: Transfers<M>,
-    counts: Vec<Count>,
+    /// How many elements devices say that arrays have.
+    counts: HashMap<(Peers, MessageId, SignalId), usize>,
     /// How many elements every array has that varies, whatever the device says.
     count: Option<usize>,
 }
 
 impl<M> Default for Assembly<M> {
     fn default() -> Self {
-        Self { transfers: Vec::new(), by_transport: Transfers::default(), counts: Vec::new(), count: None }
+        Self { begun: Begun::default(), by_transport: Transfers::default(), counts: HashMap::new(), count: None }
     }
 }
 
 /// The addresses of the two sides, in the order of their kinds.
 pub type Peers = Vec<(AddressTypeId, i64)>;
 
-/// How many elements a device says that an array has.
-#[derive(Clone, Debug, PartialEq)]
-struct Count {
-    node: Peers,
-    signal: (MessageId, SignalId),
-    value: usize,
-}
-
 /// The parts of one message, up to now.
 #[derive(Clone, Debug, PartialEq)]
 struct Transfer<M> {
-    long: LongMessageId,
-    peers: Peers,
-    sender: Side,
+    link: Link,
     /// What all of its parts show.
     counter: Option<u64>,
     /// How many data bytes the first part announces.
     announced: Option<usize>,
-    /// When the last part came, in nanoseconds from any start, if that is known.
-    since: Option<u64>,
+    /// When silence ends it, in nanoseconds from any start, if that is known.
+    deadline: Option<u64>,
     /// Each part that came: how many come before it, its data, and its frame.
     parts: Vec<(usize, Vec<u8>, M)>,
     /// Whether a frame said that no other follows.
@@ -136,7 +132,8 @@ impl<M: Clone> Assembly<M> {
         frame: &Frame,
         decoded: &Decoded,
     ) -> Taken<M> {
-        let mut ended = self.silent(protocol, model, |open| open.is_silent(protocol, now));
+        let silent = now.map_or_else(Vec::new, |now| self.begun.silent(now));
+        let mut ended = self.silent(protocol, model, silent);
         let taken = self.take_part(now, (protocol, model), mark, frame, decoded);
         ended.extend(taken.ended);
         Taken { ended, ..taken }
@@ -144,21 +141,17 @@ impl<M: Clone> Assembly<M> {
 
     /// Ends the messages that end by silence, since no frame follows.
     pub fn fall_silent(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        self.silent(protocol, model, |open| protocol.silence(&protocol[open.long]).is_some())
+        let ends = |open: &Transfer<M>| protocol.silence(&protocol[open.link.long]).is_some();
+        let silent = self.begun.entries().filter(|(_, open)| ends(open)).map(|(number, _)| number).collect();
+        self.silent(protocol, model, silent)
     }
 
-    fn silent(
-        &mut self,
-        protocol: &Protocol,
-        model: Option<ModelId>,
-        is_silent: impl Fn(&Transfer<M>) -> bool,
-    ) -> Vec<Assembled<M>> {
-        let mut ended = Vec::new();
-        while let Some(open) = self.transfers.iter().position(&is_silent) {
-            self.transfers[open].is_ended = true;
-            ended.push(self.end(protocol, model, open, None));
-        }
-        ended
+    fn silent(&mut self, protocol: &Protocol, model: Option<ModelId>, numbers: Vec<usize>) -> Vec<Assembled<M>> {
+        let end = |number| {
+            self.begun.get_mut(number)?.is_ended = true;
+            self.end(protocol, model, number, None)
+        };
+        numbers.into_iter().filter_map(end).collect()
     }
 
     fn take_part(
@@ -181,45 +174,57 @@ impl<M: Clone> Assembly<M> {
         let found = protocol.long_message(&protocol[decoded.message]).filter(|_| decoded.addressing.is_some());
         let found = found.and_then(|(id, long)| Some((id, long, long.parts()?)));
         let Some((id, long, parts)) = found else { return Taken::NOTHING };
-        let part = Part::of(protocol, (long, parts), model, frame, decoded);
-        let mut ended = Vec::new();
-        let of = |side| self.transfers.iter().position(|known| known.is(id, &peers, side));
-        let Some(part) = part else {
-            if let Some(open) = of(Side::Module).filter(|_| decoded.kind == Kind::Request) {
-                ended.push(self.end(protocol, model, open, None));
-            }
-            return Taken { is_part: false, ended };
+        let mut link = Link { long: id, peers, sender: Side::Module };
+        let Some(part) = Part::of(protocol, (long, parts), model, frame, decoded) else {
+            let open = self.begun.number(&link).filter(|_| decoded.kind == Kind::Request);
+            let ended = open.and_then(|open| self.end(protocol, model, open, None));
+            return Taken { is_part: false, ended: ended.into_iter().collect() };
         };
-        let open = of(decoded.sender);
-        let open = match open {
-            Some(open) if self.transfers[open].repeats(&part) => {
-                self.transfers[open].since = now;
-                return Taken { is_part: true, ended };
-            }
-            Some(open) if self.transfers[open].is_before(&part) => open,
-            other => {
-                ended.extend(other.map(|open| self.end(protocol, model, open, None)));
-                self.transfers.push(Transfer::new((id, peers), &part, frame, decoded));
-                self.transfers.len() - 1
-            }
-        };
-        let transfer = &mut self.transfers[open];
-        (transfer.frame, transfer.decoded, transfer.since) = (frame.clone(), decoded.clone(), now);
-        let count = self.count(protocol, &self.transfers[open]);
-        let transfer = &mut self.transfers[open];
-        let expected = if part.is_last { Some(part.index + 1) } else { transfer.expected(long, count) };
-        let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
-        transfer.parts.push((part.index, part.data, mark));
-        transfer.is_ended = part.is_last;
-        if is_end {
-            ended.push(self.end(protocol, model, open, expected));
-        }
+        link.sender = decoded.sender;
+        let deadline = now.and_then(|now| now.checked_add(nanoseconds(protocol.silence(long)?)?));
+        let ended = self.add((protocol, model), (link, deadline), (part, mark), (frame, decoded));
         Taken { is_part: true, ended }
+    }
+
+    /// Adds a part to the message of its link, or begins one. It returns the messages that end.
+    fn add(
+        &mut self,
+        (protocol, model): (&Protocol, Option<ModelId>),
+        (link, deadline): (Link, Option<u64>),
+        (part, mark): (Part, M),
+        (frame, decoded): (&Frame, &Decoded),
+    ) -> Vec<Assembled<M>> {
+        let mut ended = Vec::new();
+        let known = self.begun.number(&link).and_then(|open| Some((open, self.begun.get(open)?)));
+        let open = match known {
+            Some((open, known)) if known.repeats(&part) => {
+                self.begun.wait(open, deadline);
+                return ended;
+            }
+            Some((open, known)) if known.is_before(&part) => open,
+            other => {
+                let other = other.map(|(open, _)| open);
+                ended.extend(other.and_then(|open| self.end(protocol, model, open, None)));
+                self.begun.begin(Transfer::new(link, &part, frame, decoded))
+            }
+        };
+        self.begun.wait(open, deadline);
+        let (next, is_last) = (part.index + 1, part.is_last);
+        let Some(transfer) = self.begun.get_mut(open) else { return ended };
+        transfer.add(part, mark, frame, decoded);
+        let Some(transfer) = self.begun.get(open) else { return ended };
+        let long = &protocol[transfer.link.long];
+        let expected = if is_last { Some(next) } else { transfer.expected(long, self.count(protocol, transfer)) };
+        if expected.unwrap_or(long.parts_of(long.longest())) <= next {
+            ended.extend(self.end(protocol, model, open, expected));
+        }
+        ended
     }
 
     /// Ends all messages whose parts have begun to come.
     pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        let mut ended: Vec<_> = (0..self.transfers.len()).map(|_| self.end(protocol, model, 0, None)).collect();
+        let open: Vec<_> = self.begun.entries().map(|(number, _)| number).collect();
+        let mut ended: Vec<_> = open.into_iter().filter_map(|open| self.end(protocol, model, open, None)).collect();
         ended.extend(self.by_transport.finish(protocol, model));
         ended
     }
@@ -227,11 +232,10 @@ impl<M: Clone> Assembly<M> {
     /// Remembers how many elements a device says that its arrays have.
     fn keep_counts(&mut self, protocol: &Protocol, node: &Peers, decoded: &Decoded) {
         let wanted = protocol.long_messages.iter().filter_map(|long| long.parts()?.count);
-        for signal in wanted.filter(|(message, _)| *message == decoded.message) {
-            let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == signal.1) else { continue };
-            let (node, value) = (module(protocol, node), usize::try_from(reading.bits).unwrap_or(usize::MAX));
-            self.counts.retain(|known| (&known.node, known.signal) != (&node, signal));
-            self.counts.push(Count { node, signal, value });
+        for (message, signal) in wanted.filter(|(message, _)| *message == decoded.message) {
+            let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == signal) else { continue };
+            let value = usize::try_from(reading.bits).unwrap_or(usize::MAX);
+            self.counts.insert((module(protocol, node), message, signal), value);
         }
     }
 
@@ -242,9 +246,8 @@ impl<M: Clone> Assembly<M> {
             return self.count;
         }
         let is_told = protocol.is_told(&protocol[transfer.decoded.frame]);
-        let signal = protocol[transfer.long].parts()?.count.filter(|_| !is_told)?;
-        let node = module(protocol, &transfer.peers);
-        self.counts.iter().find(|known| (&known.node, known.signal) == (&node, signal)).map(|known| known.value)
+        let (message, signal) = protocol[transfer.link.long].parts()?.count.filter(|_| !is_told)?;
+        self.counts.get(&(module(protocol, &transfer.link.peers), message, signal)).copied()
     }
 }
 
@@ -256,33 +259,26 @@ impl<M: Clone> Assembly<M> {
         model: Option<ModelId>,
         open: usize,
         expected: Option<usize>,
-    ) -> Assembled<M> {
-        let transfer = self.transfers.remove(open);
-        let long = &protocol[transfer.long];
+    ) -> Option<Assembled<M>> {
+        let transfer = self.begun.end(open)?;
+        let long = &protocol[transfer.link.long];
         let count = self.count(protocol, &transfer);
         let expected = expected.or_else(|| transfer.expected(long, count));
-        transfer.assembled(protocol, (long, model), (expected, count))
+        Some(transfer.assembled(protocol, (long, model), (expected, count)))
     }
 }
 
 impl<M: Clone> Transfer<M> {
     /// Returns a message that begins with a part.
-    fn new((long, peers): (LongMessageId, Peers), part: &Part, frame: &Frame, decoded: &Decoded) -> Self {
+    fn new(link: Link, part: &Part, frame: &Frame, decoded: &Decoded) -> Self {
         let Part { counter, announced, .. } = *part;
-        let (sender, parts, frame, decoded) = (decoded.sender, Vec::new(), frame.clone(), decoded.clone());
-        Self { long, peers, sender, counter, announced, since: None, parts, is_ended: false, frame, decoded }
+        let (parts, frame, decoded) = (Vec::new(), frame.clone(), decoded.clone());
+        Self { link, counter, announced, deadline: None, parts, is_ended: false, frame, decoded }
     }
 
-    /// Tests whether it is a message between these peers, from that side.
-    fn is(&self, long: LongMessageId, peers: &Peers, sender: Side) -> bool {
-        (self.long, &self.peers, self.sender) == (long, peers, sender)
-    }
-
-    /// Tests whether silence has ended the message.
-    fn is_silent(&self, protocol: &Protocol, now: Option<u64>) -> bool {
-        let passed = now.zip(self.since).and_then(|(now, since)| now.checked_sub(since)).map(Duration::from_nanos);
-        let silence = protocol.silence(&protocol[self.long]);
-        passed.zip(silence).is_some_and(|(passed, silence)| passed >= silence)
+    fn add(&mut self, part: Part, mark: M, frame: &Frame, decoded: &Decoded) {
+        (self.frame, self.decoded, self.is_ended) = (frame.clone(), decoded.clone(), part.is_last);
+        self.parts.push((part.index, part.data, mark));
     }
 
     /// Tests whether a part is the last one once more.
@@ -321,7 +317,8 @@ impl<M: Clone> Transfer<M> {
         let notes = self.decoded.notes.iter().filter(of_addresses).cloned().chain(said.notes).chain(note).collect();
         let counter = self.counter.zip(long.parts().and_then(|parts| parts.counter));
         let counter = counter.map(|(value, signal)| (protocol[long.message][signal].name.clone(), value));
-        let decoded = Decoded { long: Some(self.long), signals: said.signals, notes, reserved: [0; 8], ..self.decoded };
+        let decoded =
+            Decoded { long: Some(self.link.long), signals: said.signals, notes, reserved: [0; 8], ..self.decoded };
         let data = incomplete.is_none().then_some(joined.data);
         let marks = self.parts.into_iter().map(|(_, _, mark)| mark).collect();
         Assembled { marks, frame: self.frame, decoded, data, reserved: said.reserved, counter, incomplete }
@@ -417,4 +414,8 @@ fn filling_note(long: &LongMessage, rest: &[u8]) -> Option<Note> {
 pub(super) fn module(protocol: &Protocol, peers: &Peers) -> Peers {
     let own = peers.iter().filter(|(kind, _)| protocol[*kind].send.is_none());
     own.copied().collect()
+}
+
+fn nanoseconds(time: Duration) -> Option<u64> {
+    u64::try_from(time.as_nanos()).ok()
 }

@@ -45,6 +45,16 @@ pub enum Side {
     Controller,
 }
 
+impl Side {
+    /// Returns the side that a frame of this one goes to.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Module => Self::Controller,
+            Self::Controller => Self::Module,
+        }
+    }
+}
+
 /// Who answers a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Who {

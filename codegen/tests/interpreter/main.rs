@@ -2,6 +2,7 @@
 
 mod arrays;
 mod assembled;
+mod busy;
 mod examples;
 mod isotp;
 mod j1939;

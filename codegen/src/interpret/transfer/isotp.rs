@@ -1,5 +1,8 @@
 //! Transfers by ISO 15765-2: a single frame, or a first frame and consecutive ones, and the receiver's flow control.
 
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+
 use indexmap::IndexMap;
 
 use super::{Arrived, Part, Started, sending};
@@ -19,11 +22,15 @@ const OVERFLOW: usize = 2;
 
 /// The messages of several frames that have begun, by who sends them. `M` is what the caller remembers of each frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Transfers<M>(IndexMap<Link, Transfer<M>>);
+pub struct Transfers<M> {
+    open: IndexMap<Link, Transfer<M>>,
+    /// Their links, by what a flow control must show that answers them.
+    links: HashMap<Answered, HashSet<Link>>,
+}
 
 impl<M> Default for Transfers<M> {
     fn default() -> Self {
-        Self(IndexMap::new())
+        Self { open: IndexMap::new(), links: HashMap::new() }
     }
 }
 
@@ -54,15 +61,30 @@ impl Link {
         Self { transport: *id, id: frame.id, sender: decoded.sender, mode, peers }
     }
 
-    /// Tests whether a frame of the receiver answers one of the sender. Its mode can be another one, if addresses
-    /// show who they are. An address that everybody sends can lack.
-    fn answers(&self, protocol: &Protocol, other: &Self) -> bool {
-        let is_opposite = self.transport == other.transport && self.sender != other.sender;
-        let [named, others] = [self, other].map(|link| module(protocol, &link.peers));
-        let differs = |(kind, number): &(_, _)| other.peers.iter().any(|known| known.0 == *kind && known.1 != *number);
-        let is_between = named == others && !self.peers.iter().any(differs);
-        is_opposite && is_between && (self.mode == other.mode || !named.is_empty())
+    /// Returns what a frame of the receiver shows that answers a frame of this sender. Its mode can be another one, if
+    /// addresses show who they are.
+    fn answered(&self, protocol: &Protocol, sender: Side) -> Answered {
+        let named = module(protocol, &self.peers);
+        let mode = self.mode.filter(|_| named.is_empty());
+        Answered { transport: self.transport, sender, mode, named }
     }
+
+    /// Tests whether the addresses contradict those of another frame. One that everybody sends can lack.
+    fn contradicts(&self, other: &Self) -> bool {
+        let differs = |(kind, number): &(_, _)| other.peers.iter().any(|known| known.0 == *kind && known.1 != *number);
+        self.peers.iter().any(differs)
+    }
+}
+
+/// What frames of the sender and of the receiver have in common.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Answered {
+    transport: TransportId,
+    /// Who sends the message.
+    sender: Side,
+    mode: Option<ModeId>,
+    /// The addresses that are not sent by everybody.
+    named: Peers,
 }
 
 impl<M: Clone> Transfers<M> {
@@ -84,13 +106,19 @@ impl<M: Clone> Transfers<M> {
 
     /// Ends all transfers that have begun.
     pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        let open = std::mem::take(&mut self.0).into_values();
+        let open = std::mem::take(self).open.into_values();
         open.map(|transfer| transfer.assembled(protocol, model, None)).collect()
     }
 
     /// Ends the message of a sender, if one has begun, and says why if it is not whole.
     fn end(&mut self, part: &Part, link: &Link, why: Option<&str>) -> Vec<Assembled<M>> {
-        let open = self.0.swap_remove(link).into_iter();
+        let open = self.open.swap_remove(link).into_iter();
+        if let Entry::Occupied(mut links) = self.links.entry(link.answered(part.protocol, link.sender)) {
+            links.get_mut().remove(link);
+            if links.get().is_empty() {
+                links.remove();
+            }
+        }
         open.map(|open| open.assembled(part.protocol, part.model, why.map(str::to_owned))).collect()
     }
 
@@ -116,14 +144,16 @@ impl<M: Clone> Transfers<M> {
         let ended = self.restarted(part, &link);
         let started = message(part, data, size).filter(|_| size <= part.most_bytes());
         let is_part = started.is_some();
-        let begun = started.map(|started| (link, Transfer { started, data: data.to_vec(), marks: vec![mark] }));
-        self.0.extend(begun);
+        if let Some(started) = started {
+            self.links.entry(link.answered(part.protocol, link.sender)).or_default().insert(link.clone());
+            self.open.insert(link, Transfer { started, data: data.to_vec(), marks: vec![mark] });
+        }
         Taken { is_part, ended }
     }
 
     fn consecutive(&mut self, part: &Part, mark: M) -> Taken<M> {
         let link = Link::of(part);
-        let (Some(transfer), Some(number)) = (self.0.get_mut(&link), part.number("number")) else {
+        let (Some(transfer), Some(number)) = (self.open.get_mut(&link), part.number("number")) else {
             return Taken::NOTHING;
         };
         let wanted = transfer.marks.len() % 16;
@@ -139,12 +169,17 @@ impl<M: Clone> Transfers<M> {
         Taken { is_part: true, ended: if is_whole { self.end(part, &link, None) } else { Vec::new() } }
     }
 
+    /// Finds the message that a frame of its receiver answers, the first one if there are several.
+    fn answered(&self, protocol: &Protocol, own: &Link) -> Option<Link> {
+        let links = self.links.get(&own.answered(protocol, own.sender.other()))?;
+        let answered = links.iter().filter(|link| !own.contradicts(link));
+        answered.min_by_key(|link| self.open.get_index_of(*link)).cloned()
+    }
+
     /// Takes what the receiver answers.
     fn flow(&mut self, part: &Part) -> Taken<M> {
         let own = Link::of(part);
-        let Some(link) = self.0.keys().find(|known| own.answers(part.protocol, known)).cloned() else {
-            return Taken::NOTHING;
-        };
+        let Some(link) = self.answered(part.protocol, &own) else { return Taken::NOTHING };
         let is_over = part.number("status") == Some(OVERFLOW);
         let ended = if is_over { self.end(part, &link, Some("the receiver has no room for it")) } else { Vec::new() };
         Taken { is_part: true, ended }

@@ -1,5 +1,9 @@
 //! Transfers by SAE J1939-21: an announcement, packets with numbers, and the receiver's answers.
 
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+
 use super::{Arrived, Part, Started};
 use crate::interpret::assembly::{Assembled, Taken};
 use crate::interpret::content::blank_data;
@@ -10,15 +14,17 @@ use crate::model::{
     TransportId,
 };
 
-/// The transfers that have begun. `M` is what the caller remembers of each frame.
+/// The transfers that have begun, by their ends. `M` is what the caller remembers of each frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Transfers<M>(Vec<Transfer<M>>);
+pub struct Transfers<M>(IndexMap<Link, Transfer<M>>);
 
 impl<M> Default for Transfers<M> {
     fn default() -> Self {
-        Self(Vec::new())
+        Self(IndexMap::new())
     }
 }
+
+type Link = (TransportId, Ends);
 
 /// The raw addresses of the sender and the receiver of a message.
 type Ends = (u32, u32);
@@ -26,12 +32,13 @@ type Ends = (u32, u32);
 /// One message, as far as its packets came.
 #[derive(Clone, Debug, PartialEq)]
 struct Transfer<M> {
-    transport: TransportId,
-    ends: Ends,
     started: Started,
     announcement: M,
-    packets: Vec<Option<Vec<u8>>>,
-    /// How many packets stand before each one that is kept, and its frame, in the order in which they came.
+    /// How many packets are announced.
+    count: usize,
+    /// The data of those that came, by their place.
+    packets: BTreeMap<usize, Vec<u8>>,
+    /// The place of each packet that is kept, and its frame, in the order in which they came.
     marks: Vec<(usize, M)>,
     /// The packet from which the receiver lets them come once more.
     again: Option<usize>,
@@ -57,24 +64,19 @@ impl<M: Clone> Transfers<M> {
 
     /// Ends all transfers that have begun.
     pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        let open = std::mem::take(&mut self.0).into_iter().filter(|transfer| !transfer.is_done);
+        let open = std::mem::take(&mut self.0).into_values().filter(|transfer| !transfer.is_done);
         open.map(|transfer| transfer.assembled(protocol, model, None)).collect()
     }
 
-    fn place(&self, part: &Part, ends: Ends) -> Option<usize> {
-        self.0.iter().position(|known| (known.transport, known.ends) == (part.id, ends))
-    }
-
-    /// Ends the transfer at a place, and says why if it is not whole.
-    fn end(&mut self, part: &Part, place: usize, why: &str) -> Option<Assembled<M>> {
-        let transfer = self.0.swap_remove(place);
+    /// Ends a transfer, and says why if it is not whole.
+    fn end(&mut self, part: &Part, link: Link, why: &str) -> Option<Assembled<M>> {
+        let transfer = self.0.swap_remove(&link)?;
         (!transfer.is_done).then(|| transfer.assembled(part.protocol, part.model, Some(why.to_owned())))
     }
 
     fn begin(&mut self, part: &Part, groups: &Groups, mark: M) -> Taken<M> {
-        let open = self.place(part, ends(part, groups));
-        let mut ended: Vec<_> =
-            open.and_then(|open| self.end(part, open, "another message begins")).into_iter().collect();
+        let link = link(part, groups);
+        let mut ended: Vec<_> = self.end(part, link, "another message begins").into_iter().collect();
         let (Some(size), Some(packets), Some(group)) =
             (part.number("size"), part.number("packets"), part.number("group"))
         else {
@@ -86,17 +88,16 @@ impl<M: Clone> Transfers<M> {
         let is_right = part.decoded.notes.iter().all(|note| note.rule != NoteRule::OutOfRange)
             && size.div_ceil(Groups::PACKET) == packets;
         let transfer = Transfer {
-            transport: part.id,
-            ends: ends(part, groups),
             started,
             announcement: mark,
-            packets: vec![None; if is_right { packets } else { 0 }],
+            count: if is_right { packets } else { 0 },
+            packets: BTreeMap::new(),
             marks: Vec::new(),
             again: None,
             is_done: false,
         };
         if is_right {
-            self.0.push(transfer);
+            self.0.insert(link, transfer);
         } else {
             let why = format!("{size} bytes in {packets} packets are announced");
             ended.push(transfer.assembled(part.protocol, part.model, Some(why)));
@@ -105,31 +106,32 @@ impl<M: Clone> Transfers<M> {
     }
 
     fn packet(&mut self, part: &Part, groups: &Groups, mark: M) -> Taken<M> {
-        let open = self.place(part, ends(part, groups)).filter(|open| !self.0[*open].is_done);
-        let (Some(open), Some(number)) = (open, part.number("number")) else { return Taken::NOTHING };
-        let transfer = &mut self.0[open];
-        let Some(index) = number.checked_sub(1).filter(|index| *index < transfer.packets.len()) else {
+        let link = link(part, groups);
+        let open = self.0.get_mut(&link).filter(|open| !open.is_done);
+        let (Some(transfer), Some(number)) = (open, part.number("number")) else { return Taken::NOTHING };
+        let Some(index) = number.checked_sub(1).filter(|index| *index < transfer.count) else {
             return Taken::NOTHING;
         };
         let data = part.frame.data.iter().skip(1).copied().collect::<Vec<_>>();
         let is_again = transfer.again.is_some_and(|first| index >= first);
-        let why = match &transfer.packets[index] {
+        let why = match transfer.packets.get(&index) {
             _ if is_again => None,
             Some(known) if *known == data => return Taken { is_part: true, ended: Vec::new() },
             Some(_) => Some(format!("packet {number} came twice, with other data")),
             None => {
-                let later = transfer.packets.iter().skip(index).position(Option::is_some);
-                later.map(|later| format!("packet {number} came after packet {}", number + later))
+                let later = transfer.packets.range(index..).next();
+                later.map(|(later, _)| format!("packet {number} came after packet {}", later + 1))
             }
         };
         if let Some(why) = why {
-            return Taken { is_part: true, ended: self.end(part, open, &why).into_iter().collect() };
+            return Taken { is_part: true, ended: self.end(part, link, &why).into_iter().collect() };
         }
-        transfer.packets[index] = Some(data);
+        transfer.packets.insert(index, data);
         transfer.marks.retain(|(known, _)| *known != index);
         transfer.marks.push((index, mark));
-        let is_last = transfer.ends.1 == Groups::EVERYBODY && number == transfer.packets.len();
-        let is_whole = transfer.packets.iter().all(Option::is_some);
+        let (_, (_, receiver)) = link;
+        let is_last = receiver == Groups::EVERYBODY && number == transfer.count;
+        let is_whole = transfer.packets.len() == transfer.count;
         if !is_whole && !is_last {
             return Taken { is_part: true, ended: Vec::new() };
         }
@@ -140,48 +142,45 @@ impl<M: Clone> Transfers<M> {
 
     /// Takes what the receiver lets come. It can ask for packets once more.
     fn allow(&mut self, part: &Part, groups: &Groups) -> Taken<M> {
-        let open = self.place(part, ends_of_answer(part, groups));
-        let next = part.number("next").and_then(|next| next.checked_sub(1));
-        if let (Some(open), Some(next)) = (open, next) {
-            let transfer = &mut self.0[open];
-            let is_again = transfer.packets.iter().skip(next).any(Option::is_some);
+        let Some(transfer) = self.0.get_mut(&link_of_answer(part, groups)) else { return Taken::NOTHING };
+        if let Some(next) = part.number("next").and_then(|next| next.checked_sub(1)) {
+            let is_again = transfer.packets.range(next..).next().is_some();
             transfer.again = is_again.then_some(next);
         }
-        Taken { is_part: open.is_some(), ended: Vec::new() }
+        Taken { is_part: true, ended: Vec::new() }
     }
 
     fn acknowledge(&mut self, part: &Part, groups: &Groups) -> Taken<M> {
-        let Some(open) = self.place(part, ends_of_answer(part, groups)) else { return Taken::NOTHING };
-        let ended = self.end(part, open, "the receiver says that it came whole");
+        let link = link_of_answer(part, groups);
+        if !self.0.contains_key(&link) {
+            return Taken::NOTHING;
+        }
+        let ended = self.end(part, link, "the receiver says that it came whole");
         Taken { is_part: true, ended: ended.into_iter().collect() }
     }
 
     fn abort(&mut self, part: &Part, groups: &Groups) -> Taken<M> {
-        let ends = [ends(part, groups), ends_of_answer(part, groups)];
         let group = part.number("group");
-        let is_meant = |open: &usize| {
-            let transfer = &self.0[*open];
-            Some(transfer.group(part.protocol, groups)) == group
-        };
-        let Some(open) = ends.into_iter().filter_map(|ends| self.place(part, ends)).find(is_meant) else {
-            return Taken::NOTHING;
-        };
+        let is_meant =
+            |link: &Link| self.0.get(link).is_some_and(|open| Some(open.group(part.protocol, groups)) == group);
+        let links = [link(part, groups), link_of_answer(part, groups)];
+        let Some(link) = links.into_iter().find(is_meant) else { return Taken::NOTHING };
         let reason = part.number("reason").unwrap_or_default();
-        let ended = self.end(part, open, &format!("the transfer is aborted for reason {reason}"));
+        let ended = self.end(part, link, &format!("the transfer is aborted for reason {reason}"));
         Taken { is_part: true, ended: ended.into_iter().collect() }
     }
 }
 
-/// Returns the ends of the transfer that the sender's frame belongs to.
-fn ends(part: &Part, groups: &Groups) -> Ends {
+/// Returns the link of the transfer that the sender's frame belongs to.
+fn link(part: &Part, groups: &Groups) -> Link {
     let [sender, receiver] = [groups.source, groups.target].map(|field| part.protocol[field].get(part.frame.id));
-    (sender, receiver)
+    (part.id, (sender, receiver))
 }
 
-/// Returns the ends of the transfer that the receiver's frame belongs to.
-fn ends_of_answer(part: &Part, groups: &Groups) -> Ends {
-    let (sender, receiver) = ends(part, groups);
-    (receiver, sender)
+/// Returns the link of the transfer that the receiver's frame belongs to.
+fn link_of_answer(part: &Part, groups: &Groups) -> Link {
+    let (transport, (sender, receiver)) = link(part, groups);
+    (transport, (receiver, sender))
 }
 
 /// Finds the long message of a group, which frame it would be if one were enough, and the identifier of that.
@@ -213,8 +212,9 @@ impl<M: Clone> Transfer<M> {
     fn assembled(self, protocol: &Protocol, model: Option<ModelId>, why: Option<String>) -> Assembled<M> {
         let incomplete = self.missing(&protocol[self.started.long], why);
         let (mut data, mut came) = (Vec::new(), Vec::new());
-        for packet in &self.packets {
-            data.extend(packet.as_ref().map_or(&[0; Groups::PACKET][..], Vec::as_slice));
+        for index in 0..self.count {
+            let packet = self.packets.get(&index);
+            data.extend(packet.map_or(&[0; Groups::PACKET][..], Vec::as_slice));
             came.extend([packet.is_some(); Groups::PACKET]);
         }
         let is_filled = data.iter().skip(self.started.size).all(|byte| *byte == 0xFF);
@@ -229,10 +229,10 @@ impl<M: Clone> Transfer<M> {
 
     /// Says what is missing, and why.
     fn missing(&self, long: &LongMessage, why: Option<String>) -> Option<String> {
-        let missing = self.packets.iter().enumerate().filter(|(_, packet)| packet.is_none());
-        let missing: Vec<_> = missing.map(|(index, _)| (index + 1).to_string()).collect();
+        let missing = (0..self.count).filter(|index| !self.packets.contains_key(index));
+        let missing: Vec<_> = missing.map(|index| (index + 1).to_string()).collect();
         let what = match missing.as_slice() {
-            [] if self.packets.is_empty() => None,
+            [] if self.count == 0 => None,
             [] => Some(self.started.wrong_length(long)?),
             [one] => Some(format!("packet {one} is missing")),
             several => Some(format!("the packets {} are missing", several.join(", "))),
