@@ -224,6 +224,31 @@ fn what_belongs_to_no_message_is_told() {
 }
 
 #[test]
+fn a_summary_counts_ten_thousand_identifiers_one_by_one_and_the_others_together() {
+    let folder = folder();
+    // Frames without data, of 10,002 identifiers that the protocol does not have. The first one and the last come again.
+    let numbers = (0..10_002).chain([0, 10_001]);
+    let lines = numbers.fold(String::new(), |lines, number| lines + &format!("(1) can0 {number:08X}#\n"));
+    fs::write(folder.path().join("noise.log"), lines).expect("the folder can be written");
+    let summary = |arguments: &[&str]| {
+        let call = ["decode", "--protocol", "infy", "--summary", "noise.log"];
+        text(&canspec(folder.path(), &[&call, arguments].concat()).stdout)
+    };
+    let shown = summary(&["--format", "jsonl"]);
+    let of = |kind: &str| shown.lines().filter(|line| line.contains(kind)).collect::<Vec<_>>();
+    assert_eq!(of(r#"{"summary":"unrecognised""#).len(), 10_000);
+    assert_eq!(of(r#"{"summary":"unrecognised","id":"00000000""#).len(), 1);
+    assert!(of(r#""id":"00000000""#)[0].contains(r#""frames":2,"line":1,"#), "{}", of(r#""id":"00000000""#)[0]);
+    let others = of(r#"{"summary":"others""#);
+    assert_eq!(others.len(), 1, "{others:?}");
+    assert!(others[0].ends_with(r#""frames":3,"line":10001}"#), "{others:?}");
+    let table = summary(&[]);
+    let last: Vec<_> = table.lines().last().unwrap_or_default().split_whitespace().collect();
+    assert_eq!((last[0], last[2], last[3]), ("others", "3", "10001"), "{last:?}");
+    assert!(table.ends_with("only the first 10000 are counted one by one\n"), "{last:?}");
+}
+
+#[test]
 fn a_standard_output_that_is_closed_is_an_error() {
     for call in ["list", "decode --protocol infy /dev/null", "--help", "schema"] {
         let call = format!("'{}' {call} >&-", env!("CARGO_BIN_EXE_canspec"));

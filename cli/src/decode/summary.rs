@@ -26,7 +26,12 @@ pub struct Summary {
     notes: BTreeMap<&'static str, Seen>,
     /// By identifier and problem.
     unrecognised: BTreeMap<(String, &'static str), (Seen, Reasons)>,
+    /// Those beyond the most that are counted one by one, by problem.
+    others: BTreeMap<&'static str, Seen>,
 }
+
+/// More counts of unrecognised frames than any bus has. Noise can have one a line.
+const MOST: usize = 10_000;
 
 /// How many messages came whole, and how many did not.
 #[derive(Clone, Copy, Default)]
@@ -115,6 +120,11 @@ enum Object<'a> {
         line: usize,
         reasons: &'a [String],
     },
+    Others {
+        problem: &'a str,
+        frames: u64,
+        line: usize,
+    },
 }
 
 impl Summary {
@@ -127,14 +137,20 @@ impl Summary {
         self.see(outcome.time);
         match outcome.decoded {
             Ok(decoded) => self.recognise(outcome, decoded),
-            Err(Unrecognised { problem, text, .. }) => {
-                let key = (log::identifier_text(outcome.frame), problem.name());
-                let (seen, reasons) =
-                    self.unrecognised.entry(key).or_insert((Seen::first(outcome.line), Reasons::default()));
-                seen.frames += 1;
-                reasons.add(text);
-            }
+            Err(unrecognised) => self.fail(outcome, unrecognised),
         }
+    }
+
+    fn fail(&mut self, outcome: &Outcome<'_>, Unrecognised { problem, text, .. }: &Unrecognised) {
+        let first = Seen::first(outcome.line);
+        let key = (log::identifier_text(outcome.frame), problem.name());
+        if self.unrecognised.len() == MOST && !self.unrecognised.contains_key(&key) {
+            self.others.entry(problem.name()).or_insert(first).frames += 1;
+            return;
+        }
+        let (seen, reasons) = self.unrecognised.entry(key).or_insert((first, Reasons::default()));
+        seen.frames += 1;
+        reasons.add(text);
     }
 
     fn recognise(&mut self, outcome: &Outcome<'_>, decoded: &Decoded) {
@@ -226,10 +242,13 @@ impl Summary {
         let unrecognised = self.unrecognised().into_iter().map(|(id, problem, Seen { frames, line }, reasons)| {
             Object::Unrecognised { id, problem, frames: *frames, line: *line, reasons: &reasons.texts }
         });
+        let others = self.others.iter();
+        let others =
+            others.map(|(problem, Seen { frames, line })| Object::Others { problem, frames: *frames, line: *line });
         let Asides { comments, drops, dropped } = asides;
         let dropped = (drops > 0).then_some(Object::Dropped { frames: dropped, lines: drops });
         let comments = (comments > 0).then_some(Object::Comments { lines: comments });
-        let counts = messages.chain(wholes).chain(notes).chain(unrecognised);
+        let counts = messages.chain(wholes).chain(notes).chain(unrecognised).chain(others);
         for object in [log].into_iter().chain(counts).chain(dropped).chain(comments) {
             serde_json::to_writer(&mut *out, &object)?;
             writeln!(out)?;
@@ -267,8 +286,12 @@ impl Summary {
             let cells = vec![id.to_owned(), problem.to_owned(), seen.frames.to_string(), seen.line.to_string()];
             Row { cells, last: reasons.words(), separator: " ", ..Row::default() }
         });
+        let others = self.others.iter().map(|(problem, seen)| {
+            let cells = ["others", problem, &seen.frames.to_string(), &seen.line.to_string()].map(str::to_owned);
+            row(cells.to_vec(), format!("only the first {MOST} are counted one by one"))
+        });
         let headings = ["UNRECOGNISED", "PROBLEM", "FRAMES", "FIRST LINE"];
-        table(out, &headings, "REASONS", &unrecognised.collect::<Vec<_>>())
+        table(out, &headings, "REASONS", &unrecognised.chain(others).collect::<Vec<_>>())
     }
 
     /// Says how many frames there are, in which time.
