@@ -36,7 +36,8 @@ struct Axis {
     spec: fn(u32) -> String,
 }
 
-const AXES: [Axis; 4] = [
+const AXES: [Axis; 5] = [
+    Axis { name: "messages with an enum", sizes: [625, 2_500, 10_000], spec: specs::enums },
     Axis { name: "sets of 64 members", sizes: [128, 512, 2_048], spec: specs::sets },
     Axis { name: "device models", sizes: [16, 64, 256], spec: specs::models },
     Axis { name: "named values of a field", sizes: [4_096, 16_384, 65_536], spec: specs::values },
@@ -133,19 +134,19 @@ fn build(root: &Path) -> io::Result<Cost> {
     }
 }
 
-/// Prints what logs of more and more lines cost, each decoded as a table and as JSON.
+/// Prints what logs of more and more lines cost, each decoded as a table, as JSON and as CSV.
 fn of_lines(folder: &Path) -> io::Result<()> {
     println!(
-        "\n| lines of a log | table | memory | lines a second | JSON | memory | lines a second |\n\
-         |--:|--:|--:|--:|--:|--:|--:|"
+        "\n| lines of a log | table | memory | lines a second | JSON | memory | lines a second \
+         | CSV | memory | lines a second |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
     );
     let spec = write(folder, "synthetic.yaml", &specs::messages(100))?;
     for count in LENGTHS {
         let log = log(folder, "long.log", 100, count)?;
-        let [table, json] = ["text", "jsonl"].map(|format| cost(&decode_as(format, &spec, &log)));
+        let [table, json, csv] = ["text", "jsonl", "csv"].map(|format| cost(&decode_as(format, &spec, &log)));
         let row =
             |cost: Cost| format!("{} | {:.1} million", cells(&cost), f64::from(count) / cost.wait.as_secs_f64() / 1e6);
-        println!("| {count} | {} | {} |", row(table?), row(json?));
+        println!("| {count} | {} | {} | {} |", row(table?), row(json?), row(csv?));
     }
     Ok(())
 }
