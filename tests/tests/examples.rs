@@ -1,7 +1,7 @@
 //! The documents' own frames in the generated code: the values that the spec states, and the same bytes back.
 
 use canspec_codegen::interpret::Frame;
-use canspec_codegen::model::{Example, Protocol};
+use canspec_codegen::model::{Example, Protocol, Signal};
 use canspec_runtime::Number;
 use canspec_tests::{Visitor, protocol, received, visit, visit_in_steps};
 use embedded_can::Frame as _;
@@ -27,6 +27,7 @@ fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -
     let received = received::<P>(example.model, &Frame::of(protocol, example));
     let received = received.unwrap_or_else(|problem| panic!("{at}: {problem}"));
     assert_eq!(received.exchange().message(), message.name, "{at}");
+    let mut is_borne = true;
     let mut read = Vec::new();
     received.visit(|reading| read.push((reading.name, bits(reading.raw))));
     assert!(read.is_empty() || !example.means.is_empty(), "{at}");
@@ -38,13 +39,22 @@ fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -
         let mask = u64::MAX >> (64 - width);
         assert!(meaning.is(signal, raw & mask), "{at}: {} means {}", signal.name, meaning.text);
         assert!(signal.encoding.numeral().is_signed() || raw & !mask == 0, "{at}");
+        is_borne &= is_borne_by_product(signal, raw & mask);
     }
-    if !received.is_to_module() || example.notes.is_empty() {
+    if received.is_to_module() && !is_borne {
+        assert!(received.encode().is_err(), "{at}: the product does not bear it");
+    } else if !received.is_to_module() || example.notes.is_empty() {
         let encoded = received.encode().unwrap_or_else(|error| panic!("{at}: {error}"));
         assert_eq!(encoded.data(), bytes, "{at}");
         assert_eq!(encoded.raw_id(), example.id, "{at}");
     }
     true
+}
+
+/// Tests whether the limit of a product allows bits, which may stand for a special value.
+fn is_borne_by_product(signal: &Signal, bits: u64) -> bool {
+    let is_special = signal.specials.iter().any(|special| special.raw == signal.raw_of(bits));
+    is_special || signal.limit.as_ref().is_none_or(|limit| signal.is_in(&limit.range, bits))
 }
 
 /// Returns a raw value as bits.
