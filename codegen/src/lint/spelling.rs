@@ -31,6 +31,9 @@ const SHORTEST: usize = 4;
 /// similar.
 const LONG_WORD: usize = 5;
 
+/// Words that two swapped letters turn into one another, and both are right.
+const TWINS: [[&str; 2]; 4] = [["altitude", "latitude"], ["angel", "angle"], ["form", "from"], ["trail", "trial"]];
+
 /// Words and signs between the ends of a range.
 const TO: [&str; 6] = ["to", "..", "...", "…", "-", "–"];
 
@@ -115,10 +118,10 @@ fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
     let mut found = after.iter().filter(|word| !before.contains(word));
     let is_regrouped = found.clone().count() > 1;
     let is_certain = |word: &str| is_regrouped || word.len() >= LONG_WORD || vocabulary.has_in_names(word);
-    // People seldom mistype the first letter, and `altitude` is a word beside `latitude`.
-    let begins_alike = |word: &str| is_regrouped || before.iter().any(|other| other[..1] == word[..1]);
+    let are_twins = |one: &str, other: &str| TWINS.contains(&[one, other]) || TWINS.contains(&[other, one]);
+    let is_twin = |word: &&str| before.iter().any(|other| are_twins(other, word));
     lost.any(|word| !vocabulary.has_elsewhere(word, name))
-        && found.clone().all(|word| begins_alike(word))
+        && !found.clone().any(is_twin)
         && found.all(|word| word.len() > 2 && vocabulary.has_often(word, name) && is_certain(word))
 }
 
