@@ -161,9 +161,15 @@ impl Resolver<'_> {
         Some(Place::bytes(self.integer(path, first, 0, 7)?, self.integer(path, last, 0, 7)?))
     }
 
-    /// Splits a place into its two ends.
+    /// Splits a place into its two ends, which are one if it is a number. A range has two, so that an end that is wrong
+    /// does not pass for a single place.
     pub fn ends<'t>(&mut self, path: &Path, text: &'t str, form: &str) -> Option<(&'t str, &'t str)> {
         let ends = text.split_once("..").unwrap_or((text, text));
+        if ends.0 == ends.1 && ends.0 != text {
+            let help = format!("write `{}`, or correct one of the ends", ends.0);
+            self.error_with_help(&rules::PLACE, path.at_value(), format!("both ends of `{text}` are the same"), help);
+            return None;
+        }
         if Rational::parse(ends.0).is_none() || Rational::parse(ends.1).is_none() {
             let parts: Vec<_> = text.trim_matches(['[', ']']).split(['-', ':', ',', '.']).map(str::trim).collect();
             let help = match parts.iter().filter(|part| !part.is_empty()).collect::<Vec<_>>()[..] {

@@ -86,7 +86,7 @@ impl Draft {
             parts.put("first", Map::of(firsts.map(|(index, model)| (model, index.to_string()))));
         }
         let last = self.random.u8(data..8);
-        parts.put("data", format!("{data}..{last}"));
+        parts.put("data", if data == last { data.to_string() } else { format!("{data}..{last}") });
         let says_length = last >= data + 2 && self.chance(30);
         if says_length {
             let bytes = if self.random.bool() { [data, data + 1] } else { [data + 1, data] };
