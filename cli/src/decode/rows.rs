@@ -64,7 +64,9 @@ fn of_identifier(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: Option<&Deco
         others(&mut address, outcome, decoded);
         [&protocol[decoded.message].name, &protocol[decoded.access].name, decoded.kind.name()]
     });
-    names.iter().for_each(|name| text(out, name));
+    for name in names {
+        text(out, name);
+    }
     text(out, &address);
 }
 
