@@ -191,7 +191,7 @@ class Mistakes(unittest.TestCase):
             self.assert_marked(SIGNAL, f"      current: {{bytes: 2, as: ¦{known}¦}}", message)
 
     def test_a_text_that_is_no_number_or_place_is_marked_with_what_to_write(self):
-        number = "Write a number: `12`, `-40`, `0x1F`, `41.5` or `1/1024`."
+        number = "Write a number: `12`, `-40`, `0x1F`, `0b101`, `41.5` or `1/1024`."
         for line, written, message in [
             (SIGNAL, "      current: {bytes: ¦yes¦}", "Write `0..3` or one number."),
             ("identifier:\n", "  more: {bits: ¦28..¦}", "Write `7..4` or one number."),

@@ -94,7 +94,7 @@ fn answers_of_many_receivers_find_their_messages() {
 #[test]
 fn packets_between_many_pairs_of_nodes_are_joined() {
     const PAIRS: u32 = 200 * 55;
-    let pair = |kind: u32, number: u32| 0x1C00_0000 | kind << 16 | (0xC8 + number / 200) << 8 | number % 200;
+    let pair = |kind: u32, number: u32| 0x1C00_0000 | (kind << 16) | ((0xC8 + number / 200) << 8) | (number % 200);
     let aborted = Some("packet 2 is missing; packet 1 came twice, with other data");
     let protocol = written(&format!("{HEAD}{J1939}"));
     let announced = (0..PAIRS).map(|number| format!("{:08X}#100E0002FF000200", pair(0xEC, number)));

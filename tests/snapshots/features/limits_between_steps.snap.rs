@@ -227,7 +227,7 @@ pub struct SetReach {
 impl SetReach {
     /// The signal `reach`, to read or write it alone, or to ask for its limits.
     pub const REACH: Signal<i32, f64> =
-        Signal::new("reach", Place::bytes(0, 3)).scale(1, 1024).limits(-3604.479_394_531_25, 3604.479_394_531_25);
+        Signal::new("reach", Place::bytes(0, 3)).scale(1, 1024).limits(-3_604.479_394_531_25, 3_604.479_394_531_25);
     /// The signal `share`, to read or write it alone, or to ask for its limits.
     pub const SHARE: Signal<u16, f64> =
         Signal::new("share", Place::bytes(4, 5)).scale(1, 1000).limits(0.0, 0.299_999_999_999_999_93);

@@ -106,10 +106,13 @@ fn positive(text: &str) -> TokenStream {
     text.parse::<Literal>().unwrap_or_else(|_| Literal::string(text)).into_token_stream()
 }
 
-/// Separates digits in threes, from the point outwards.
+/// Separates digits in threes, from the point outwards: on both sides of it if one side is long.
 fn grouped(text: &str) -> String {
     match text.split_once('.') {
-        Some((whole, fraction)) => format!("{}.{}", thousands(whole), from_the_left(fraction)),
+        Some((whole, fraction)) if whole.len() > 4 || fraction.len() > 5 => {
+            format!("{}.{}", from_the_right(whole, 3), from_the_left(fraction))
+        }
+        Some(_) => text.to_owned(),
         None => thousands(text),
     }
 }
@@ -127,8 +130,7 @@ fn from_the_right(digits: &str, size: usize) -> String {
 }
 
 fn from_the_left(digits: &str) -> String {
-    let size = if digits.len() < 6 { digits.len() } else { 3 };
-    digits.as_bytes().chunks(size).map(String::from_utf8_lossy).collect::<Vec<_>>().join("_")
+    digits.as_bytes().chunks(3).map(String::from_utf8_lossy).collect::<Vec<_>>().join("_")
 }
 
 #[cfg(test)]
@@ -157,6 +159,8 @@ mod tests {
         assert_eq!(float("25.7"), "25.7");
         assert_eq!(float("1/3"), "0.333_333_333_333_333_3");
         assert_eq!(float("100000"), "100_000.0");
+        assert_eq!(float("3604.4793945"), "3_604.479_394_5");
+        assert_eq!(float("3604.25"), "3604.25");
         assert_eq!(literal("1/3", Precision::Single), "0.333_333_34");
     }
 }
