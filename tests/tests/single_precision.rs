@@ -235,8 +235,8 @@ fn a_spec_that_suits_single_precision_is_not_refused_for_it() {
 fn a_step_beyond_a_limit_is_refused_though_both_have_the_same_nearest_float() {
     use in_single_precision::{SetReach, Target};
     let sends = |reach, share| SetReach { reach, share }.write(Target::Charger).is_ok();
-    assert_eq!([3604.478_515_625, -3604.478_515_625].map(|reach| sends(reach, 0.0)), [true; 2]);
-    assert_eq!([3604.479_492_187_5, -3604.479_492_187_5].map(|reach| sends(reach, 0.0)), [false; 2]);
+    assert_eq!([3_690_986.0 / 1024.0, -3_690_986.0 / 1024.0].map(|reach| sends(reach, 0.0)), [true; 2]);
+    assert_eq!([3_690_987.0 / 1024.0, -3_690_987.0 / 1024.0].map(|reach| sends(reach, 0.0)), [false; 2]);
     assert_eq!([0.299, 0.3].map(|share| sends(0.0, share)), [true, false]);
 }
 
@@ -244,12 +244,12 @@ fn a_step_beyond_a_limit_is_refused_though_both_have_the_same_nearest_float() {
 #[test]
 fn doubles_and_whole_steps_refuse_the_same_step() {
     use features_limits_between_steps::{SetReach, Target};
+    use features_limits_between_steps_in_steps as in_steps;
     let sends = |reach, share| SetReach { reach, share }.write(Target::Charger).is_ok();
-    assert_eq!([3604.478_515_625, -3604.478_515_625].map(|reach| sends(reach, 0.0)), [true; 2]);
-    assert_eq!([3604.479_492_187_5, -3604.479_492_187_5].map(|reach| sends(reach, 0.0)), [false; 2]);
+    assert_eq!([3_690_986.0 / 1024.0, -3_690_986.0 / 1024.0].map(|reach| sends(reach, 0.0)), [true; 2]);
+    assert_eq!([3_690_987.0 / 1024.0, -3_690_987.0 / 1024.0].map(|reach| sends(reach, 0.0)), [false; 2]);
     assert_eq!([0.299, 0.3].map(|share| sends(0.0, share)), [true, false]);
 
-    use features_limits_between_steps_in_steps as in_steps;
     let sends =
         |reach_raw, share_raw| in_steps::SetReach { reach_raw, share_raw }.write(in_steps::Target::Charger).is_ok();
     assert_eq!([3_690_986, -3_690_986].map(|reach| sends(reach, 0)), [true; 2]);
@@ -262,7 +262,7 @@ fn a_double_holds_wide_steps_of_powers_of_two() {
     // 16 (2^49 - 1) and (2^52 - 1) / 8 have 49 and 52 significant bits.
     for (scale, raw, physical) in [
         (Scale::new(16, 1), (1 << 49) - 1, 9_007_199_254_740_976.0),
-        (Scale::new(1, 8), (1 << 52) - 1, 562_949_953_421_311.875),
+        (Scale::new(1, 8), (1 << 52) - 1, 4_503_599_627_370_495.0 / 8.0),
     ] {
         for (raw, physical) in [(raw, physical), (raw - 1, physical - scale.physical(1))] {
             assert_eq!((scale.physical(raw), scale.raw(physical)), (physical, Some(raw)));
