@@ -7,6 +7,7 @@ mod examples;
 mod isotp;
 mod j1939;
 mod parts;
+mod products;
 mod reading;
 mod requests;
 mod revisions;
