@@ -23,6 +23,7 @@
 extern crate std;
 
 mod address;
+mod after_silence;
 mod answer;
 pub mod assembler;
 mod bcd;
@@ -76,6 +77,7 @@ pub mod with_serde;
 mod word;
 
 pub use address::{AddressType, Addressing, Kind, Mode};
+pub use after_silence::AfterSilence;
 pub use bcd::Bcd;
 pub use bytes::Bytes;
 pub use document::Document;

@@ -5,7 +5,7 @@ use core::fmt::{self, Debug};
 use crate::frame::raw_id;
 use crate::layout::Task;
 use crate::plumbing::{Incoming, Shown, Way};
-use crate::{Destination, Entry, Filter, Mode, Received, Timing};
+use crate::{AfterSilence, Destination, Entry, Filter, Mode, Received, Timing};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -33,6 +33,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const REFUSALS: bool = false;
     /// The times that the document states, by their roles.
     const TIMING: Timing = Timing::NONE;
+    /// What a device does after the controller was silent for as long as its watchdog waits.
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Unknown;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 
