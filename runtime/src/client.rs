@@ -14,7 +14,7 @@
 //!     received: impl IntoIterator<Item = Frame>,
 //! ) {
 //!     for frame in received {
-//!         match client.handle(&frame) {
+//!         match client.handle(&frame, now) {
 //!             Heard::Answer { ticket, received } => println!("{ticket:?}: {received:?}"),
 //!             // Refusals, late and repeated answers, reports, and frames of others.
 //!             _ => {}
@@ -25,7 +25,7 @@
 //!             Step::Send { frame, .. } => send(frame),
 //!             Step::Lost(ticket) => println!("{ticket:?}: nobody answers"),
 //!             // Requests that nobody answers, or each of several, and how modules are.
-//!             Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+//!             Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) | Step::ClockBack(_) => {}
 //!             Step::Wait(_) => break,
 //!         }
 //!     }
@@ -45,8 +45,9 @@
 //! given. While an answer lies unread, `poll` sends its request again or ends it. It can also end the
 //! wait for late answers. Then the client takes that answer for one to the next request like it.
 //!
-//! Time is a number of milliseconds from any start, and may wrap around. Call `poll` at least once
-//! in 24 days.
+//! Time is a number of milliseconds from any [start](crate::clock), and may wrap around. Call `poll` at least once
+//! in 24 days. If the clock goes back, no time counts as passed, and [`Step::ClockBack`] says so. A program that then
+//! sleeps until a time that it was told before sleeps too long. So sleep for the time that is left, and not until a time.
 
 mod duty;
 mod entry;
@@ -68,7 +69,7 @@ pub use pace::Pace;
 
 use core::num::NonZeroU32;
 
-use crate::clock::{earlier, has_come};
+use crate::clock::{Steady, earlier, has_come};
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
 use entry::{Entry, State, Urgency};
 use group::Groups;
@@ -77,13 +78,16 @@ use health::Health;
 /// The longest time in milliseconds after which a later time is still told from an earlier one.
 const LONGEST: u32 = (1 << 31) - 1;
 
+/// Why a period is refused.
+const NO_PERIOD: &str = "the period is 0 ms, which would fill the bus: it is at least 1 ms";
+
 /// Asks devices, with room for `N` requests, and for `G` groups whose members it knows.
 ///
 /// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
 /// and again.
 ///
-/// A client takes 96 bytes. Each request takes 108 on a processor of 32 bits, and 120 on one of 64 bits.
-/// Each group takes 112.
+/// A client takes 112 bytes. Each request takes 124 on a processor of 32 bits, and 136 on one of 64 bits.
+/// Each group takes 120.
 #[derive(Clone, Copy, Debug)]
 pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     pace: Pace,
@@ -91,6 +95,7 @@ pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     entries: [Option<Entry<P>>; N],
     groups: Groups<G>,
     health: Health,
+    clock: Steady,
     /// When the next frame may be sent, or could be. Long after that it is forgotten.
     free: Option<u32>,
     /// Number of the next ticket.
@@ -127,6 +132,8 @@ pub enum Step {
     Silent(u8),
     /// A silent module has sent something.
     Back(u8),
+    /// The clock has gone back by so many milliseconds. No time counts as passed, and the client goes on.
+    ClockBack(u32),
     /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
     Wait(Option<u32>),
 }
@@ -184,7 +191,10 @@ pub enum Heard<P: Protocol> {
         /// The frame.
         received: Received<P>,
     },
-    /// It answers nothing that was asked: a report, a reply to somebody else, or a request.
+    /// It goes to a module: a request or a report of another controller. A rival may only read. What it
+    /// [sets](Received::setting) shows whether it does more.
+    Rival(Received<P>),
+    /// It comes from a module and answers nothing that was asked: a report, or a reply to somebody else.
     Other(Received<P>),
     /// It is not recognised.
     Unrecognised(Problem),
@@ -203,11 +213,32 @@ impl core::fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
+/// Why a request is not asked again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NotRepeated {
+    /// There is no room for another request.
+    Full,
+    /// The period is 0 ms.
+    Period,
+}
+
+impl core::fmt::Display for NotRepeated {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Full => Full.fmt(formatter),
+            Self::Period => formatter.write_str(NO_PERIOD),
+        }
+    }
+}
+
+impl core::error::Error for NotRepeated {}
+
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns a client that has asked nothing yet.
     pub const fn new(pace: Pace) -> Self {
         let (entries, groups) = ([None; N], Groups([None; G]));
-        Self { pace, model: None, entries, groups, health: Health::NEW, free: None, next: 0 }
+        Self { pace, model: None, entries, groups, health: Health::NEW, clock: Steady::NEW, free: None, next: 0 }
     }
 
     /// Reads frames as those of a device model if messages look the same.
@@ -239,17 +270,18 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn ask_at<R>(&mut self, pace: Pace, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
+        let now = self.clock.pass(now);
         self.add_instead(Entry::new(self.ticket(), request.untyped(), pace, now))
     }
 
     /// Asks again and again, until it is [cancelled](Self::cancel). Each round ends like a request. A
-    /// round that comes too late is left out. The period is at least 1 ms. One of more than 24 days
-    /// counts as 2^31 - 1 ms, which is somewhat more than that. It ends what [`ask`](Self::ask) would end.
+    /// round that comes too late is left out. A period of more than 24 days counts as 2^31 - 1 ms, which is
+    /// somewhat more than that. It ends what [`ask`](Self::ask) would end.
     ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it. Then nothing ends.
-    pub fn every<R>(&mut self, period: u32, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
+    /// Refuses a request if there is no room for it, and a period of 0 ms. Then nothing ends.
+    pub fn every<R>(&mut self, period: u32, request: Request<P, R>, now: u32) -> Result<Ticket, NotRepeated> {
         self.repeat(period, false, request, now)
     }
 
@@ -270,14 +302,22 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it. Then nothing ends.
-    pub fn keep_alive<R>(&mut self, request: Request<P, R>, period: u32, now: u32) -> Result<Ticket, Full> {
+    /// Refuses a request if there is no room for it, and a period of 0 ms. Then nothing ends.
+    pub fn keep_alive<R>(&mut self, request: Request<P, R>, period: u32, now: u32) -> Result<Ticket, NotRepeated> {
         self.repeat(period, true, request, now)
     }
 
-    fn repeat<R>(&mut self, period: u32, is_spare: bool, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
+    fn repeat<R>(
+        &mut self,
+        period: u32,
+        is_spare: bool,
+        request: Request<P, R>,
+        now: u32,
+    ) -> Result<Ticket, NotRepeated> {
+        let now = self.clock.pass(now);
+        let period = Some(round(period).ok_or(NotRepeated::Period)?);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        self.add_instead(Entry { period: NonZeroU32::new(period.clamp(1, LONGEST)), is_spare, ..entry })
+        self.add_instead(Entry { period, is_spare, ..entry }).map_err(|Full| NotRepeated::Full)
     }
 
     /// Returns the modules that are silent.
@@ -298,6 +338,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// group. A hurried switch-on would end a stop that waits, so hurry only stops. [Cancel](Self::cancel)
     /// what is asked [again and again](Self::every) and would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
+        let now = self.clock.pass(now);
         let mut entries = self.entries.iter_mut().flatten();
         if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {
             entry.urgency = Urgency::Hurried;
@@ -317,13 +358,23 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Says what to do next.
     pub fn poll(&mut self, now: u32) -> Step {
+        let now = self.clock.pass(now);
+        if let Some(back) = self.clock.went_back() {
+            return Step::ClockBack(back);
+        }
+        let deadline = |client: &Self| client.deadline(now).map(|time| client.clock.of_program(time));
+        self.act(now).unwrap_or_else(|| Step::Wait(deadline(self)))
+    }
+
+    /// Says what to do now, if there is anything.
+    fn act(&mut self, now: u32) -> Option<Step> {
         self.free = self.free.filter(|_| self.idle_from().is_some_and(|from| !has_come(from, now)));
         let ended = self.pass(now);
         if let Some(Step::Done(ticket)) = ended {
             self.lead(ticket);
         }
         let ended = ended.or_else(|| self.health.news());
-        ended.or_else(|| self.send(now)).unwrap_or_else(|| Step::Wait(self.deadline(now)))
+        ended.or_else(|| self.send(now))
     }
 
     /// Returns from when on nothing was sent for so long that nothing which was due then can still wait for answers.
@@ -352,29 +403,32 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         ended
     }
 
-    /// Says what a received frame is.
-    pub fn handle(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
-        let asking = self.asking(frame);
+    /// Says what a frame is that was received at a time. It answers nothing that was sent after that.
+    ///
+    /// An adapter that knows when a frame came gives that time. Otherwise the program gives the time at which it
+    /// reads the frame. A driver that hands back what it has sent must not pass it on: it would be a
+    /// [rival](Heard::Rival).
+    pub fn handle(&mut self, frame: &impl embedded_can::Frame, received_at: u32) -> Heard<P> {
+        let received_at = self.clock.steady(received_at);
+        let asking = self.asking(frame, received_at);
         let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
-            Err(problem) => return self.unrecognised(frame, problem, asking),
+            Err(problem) => return self.unrecognised(frame, problem, asking, received_at),
         };
         let node = sender(&received);
         if let Some(node) = node {
-            self.health.heard(node);
-            self.groups.heard(node);
-            let entries = self.entries.iter_mut().flatten();
-            entries.filter(|entry| entry.node() == Some(node)).for_each(|entry| entry.is_heard = true);
+            self.heard(node, received_at);
         }
         let Some(entry) = asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) else {
-            return Heard::Other(received);
+            return if received.is_to_module() { Heard::Rival(received) } else { Heard::Other(received) };
         };
-        if let Some(heard) = entry.too_late(received) {
+        if let Some(heard) = entry.too_late(received, received_at) {
             return heard;
         }
         let is_refusal = entry.request.refuses(frame) == Some(true);
         let begun = entry.begun;
-        let heard = entry.answered(received, is_refusal, self.model, self.groups.asked_by(entry));
+        let group = self.groups.asked_by(entry);
+        let heard = entry.answered(received, is_refusal, self.model, received_at, group);
         let is_over = entry.is_resting();
         if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
             self.put_off(node, begun);
@@ -385,19 +439,36 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         heard
     }
 
+    /// Notes that a module has spoken.
+    fn heard(&mut self, node: u8, received_at: u32) {
+        self.health.heard(node);
+        self.groups.heard(node, received_at);
+        let entries = self.entries.iter_mut().flatten().filter(|entry| entry.node() == Some(node));
+        entries.for_each(|entry| entry.is_heard |= has_come(entry.begun, received_at));
+    }
+
     /// Returns the place of the request that a frame answers.
-    fn asking(&self, frame: &impl embedded_can::Frame) -> Option<usize> {
-        let entries = self.entries.iter().enumerate().filter_map(|(place, slot)| Some((place, slot.as_ref()?)));
-        let asking = entries.filter(|(_, entry)| entry.claim().is_some() && self.groups.is_answer(entry, frame));
-        asking.min_by_key(|(_, entry)| entry.claim()).map(|(place, _)| place)
+    fn asking(&self, frame: &impl embedded_can::Frame, received_at: u32) -> Option<usize> {
+        let claims = self.entries.iter().enumerate().filter_map(|(place, slot)| {
+            let entry = slot.as_ref()?;
+            let claim = entry.claim(received_at)?;
+            self.groups.is_answer(entry, frame).then_some((place, claim))
+        });
+        claims.min_by_key(|(_, claim)| *claim).map(|(place, _)| place)
     }
 
     /// Says what a frame is that is not recognised.
-    fn unrecognised(&mut self, frame: &impl embedded_can::Frame, problem: Problem, asking: Option<usize>) -> Heard<P> {
+    fn unrecognised(
+        &mut self,
+        frame: &impl embedded_can::Frame,
+        problem: Problem,
+        asking: Option<usize>,
+        received_at: u32,
+    ) -> Heard<P> {
         match asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
             Some(entry) if problem == Problem::Length && entry.awaits() => {
                 let is_group_known = self.groups.is_asked_by(entry);
-                entry.answered_short(frame, is_group_known)
+                entry.answered_short(frame, received_at, is_group_known)
             }
             _ => Heard::Unrecognised(problem),
         }
@@ -445,7 +516,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         entry.start(now, self.groups.answering(&entry.request));
         self.free = Some(now.wrapping_add(entry.pace.gap));
         let (ticket, frame) = (entry.ticket, *entry.request.frame());
-        if entry.sent == 1 {
+        if entry.tries == 1 {
             self.hold_back(ticket);
         }
         Some(Step::Send { ticket, frame })
@@ -473,7 +544,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
         };
         let doubt = |entry: &Entry<P>| self.idle_from().filter(|_| entry.leader.is_some() && entry.due(now).is_some());
-        let times = |entry| [next(entry), entry.tail_until(), entry.unheard_from(), entry.overdue_from(), doubt(entry)];
+        let opens = |entry: &Entry<P>| [entry.tail_until(), entry.closes(), entry.unheard_from(), entry.overdue_from()];
+        let times = |entry| opens(entry).into_iter().chain([next(entry), doubt(entry)]);
         let times = self.entries.iter().flatten().flat_map(times).flatten();
         // What is due and not sent waits for another entry.
         let times = times.filter(|time| !has_come(*time, now));
@@ -485,6 +557,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 fn sender<P: Protocol>(received: &Received<P>) -> Option<u8> {
     let node = received.node().filter(|_| !received.is_to_module())?;
     u8::try_from(node).ok()
+}
+
+/// Returns the time from one round to the next.
+fn round(period: u32) -> Option<NonZeroU32> {
+    NonZeroU32::new(period.min(LONGEST))
 }
 
 /// Tests whether one module, or one for all, answers a request.

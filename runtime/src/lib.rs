@@ -29,7 +29,7 @@ pub mod assembler;
 mod bcd;
 mod bytes;
 pub mod client;
-mod clock;
+pub mod clock;
 mod document;
 mod entry;
 mod error;

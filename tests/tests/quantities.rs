@@ -284,14 +284,21 @@ impl Told {
             match self.client.poll(self.now) {
                 Step::Send { frame, .. } => return frame,
                 Step::Wait(until) => self.now = until.expect("there is something to do"),
-                Step::Lost(_) | Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+                Step::Lost(_)
+                | Step::Done(_)
+                | Step::Missing { .. }
+                | Step::Silent(_)
+                | Step::Back(_)
+                | Step::ClockBack(_) => {}
             }
         }
     }
 
     /// Takes a reply. Returns whether it confirms what is held, and what is known of the output.
     fn hears(&mut self, id: u32, data: u64) -> (bool, Output) {
-        let Heard::Answer { ticket, received } = self.client.handle(&frame(id, data)) else { panic!("it is asked") };
+        let Heard::Answer { ticket, received } = self.client.handle(&frame(id, data), self.now) else {
+            panic!("it is asked")
+        };
         (self.duty.answered(ticket, &received), self.duty.output())
     }
 
@@ -307,7 +314,7 @@ impl Told {
 #[test]
 fn a_module_is_off_only_if_it_says_so_after_it_has_confirmed_that() {
     let client = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 0 });
-    let mut told = Told { client, duty: Duty::NONE, now: 0 };
+    let mut told = Told { client, duty: Duty::new(2), now: 0 };
     assert_eq!(told.duty.output(), Output::Unknown);
     // It was told nothing.
     assert_eq!([true, false].map(|is_off| told.reads(is_off)), [Output::Off, Output::On]);
@@ -335,7 +342,7 @@ fn a_module_is_off_only_if_it_says_so_after_it_has_confirmed_that() {
 #[test]
 fn what_was_confirmed_counts_no_more_once_something_else_is_held() {
     let client = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 0 });
-    let mut told = Told { client, duty: Duty::NONE, now: 0 };
+    let mut told = Told { client, duty: Duty::new(2), now: 0 };
     let (on, off) = (0, 0x0100_0000_0000_0000);
     told.hold(&[(DELIVERING, 1)]);
     assert_eq!(told.sent(), frame(0x029A_02F0, on));

@@ -21,9 +21,10 @@ pub enum Output {
 /// it, and neither does what was said before that echo. So a program goes on until the [`output`](Self::output) is as it
 /// should be. It [holds](Self::hold) what the module must do, and gives each answer to [`answered`](Self::answered).
 ///
-/// It takes 20 bytes.
+/// It takes 24 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Duty {
+    node: u8,
     first: Option<Ticket>,
     last: Option<Ticket>,
     /// Whether the last request was in effect since the duty began, or there is none.
@@ -32,8 +33,15 @@ pub struct Duty {
 }
 
 impl Duty {
-    /// Nothing is to be done, and nothing is known.
-    pub const NONE: Self = Self { first: None, last: None, is_confirmed: true, output: Output::Unknown };
+    /// Returns the duty of a module, by its number. Nothing is to be done, and nothing is known.
+    pub const fn new(node: u8) -> Self {
+        Self { node, first: None, last: None, is_confirmed: true, output: Output::Unknown }
+    }
+
+    /// Returns the number of the module.
+    pub const fn node(&self) -> u8 {
+        self.node
+    }
 
     /// Returns what is known of the output.
     pub const fn output(&self) -> Output {
@@ -44,7 +52,7 @@ impl Duty {
     /// says something.
     pub fn end<P: Protocol, const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
         self.first.into_iter().for_each(|ticket| client.cancel(ticket));
-        *self = Self { is_confirmed: false, ..Self::NONE };
+        *self = Self { is_confirmed: false, ..Self::new(self.node) };
     }
 
     /// [Holds](Client::hold) requests, each [after](Client::hold_after) the one before, and renews them every `refresh`
@@ -80,8 +88,12 @@ impl Duty {
         Ok(())
     }
 
-    /// Takes an [answer](super::Heard::Answer) of the module. Returns whether it confirms the last of the requests.
+    /// Takes an [answer](super::Heard::Answer). Returns whether it confirms the last of the requests. An answer of
+    /// another module, or of nobody knows which, says nothing of this one.
     pub fn answered<P: Quantities>(&mut self, ticket: Ticket, received: &Received<P>) -> bool {
+        if received.node() != Some(self.node.into()) {
+            return false;
+        }
         let confirms = self.last == Some(ticket);
         self.is_confirmed |= confirms;
         match received.quantity(Quantity::DELIVERING) {

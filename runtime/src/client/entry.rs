@@ -37,14 +37,25 @@ pub struct Entry<P: Protocol> {
     pub round: u32,
     /// When it, or what it replaced, was first sent of those times that `unheard` counts, or its tries.
     pub begun: u32,
-    /// How often it was sent in this round.
-    pub sent: u8,
+    /// When it was sent in this round, if an answer to that can come.
+    pub sent: Option<Sent>,
+    /// How many of its tries this round has had.
+    pub tries: u8,
     /// Whether the request was answered in this round.
     pub has_answer: bool,
     /// How often it, and what it replaced, was sent since this round began or a module answered.
     pub unheard: u8,
     /// Whether the module that it goes to has sent anything since `begun`.
     pub is_heard: bool,
+}
+
+/// When a request was sent.
+#[derive(Clone, Copy, Debug)]
+pub struct Sent {
+    /// The first time.
+    pub first: u32,
+    /// Until when an answer can come.
+    pub closes: u32,
 }
 
 /// Whom an entry asks.
@@ -104,7 +115,8 @@ impl<P: Protocol> Entry<P> {
             state: State::Due { from: now },
             round: now,
             begun: now,
-            sent: 0,
+            sent: None,
+            tries: 0,
             has_answer: false,
             unheard: 0,
             is_heard: false,
@@ -149,7 +161,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether this is to be sent before another one, which waits for its first answer that counts.
     pub fn is_to_go_before(&self, other: &Self, now: u32) -> bool {
-        (other.sent == 0 || other.deaf().is_some()) && self.is_before(other, now)
+        !other.listens() && self.is_before(other, now)
     }
 
     /// Tests whether a frame that answers it belongs to it, also if it does not count.
@@ -159,17 +171,24 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether an answer counts.
     pub fn listens(&self) -> bool {
-        self.sent > 0 && self.deaf().is_none() && !self.is_resting()
+        self.sent.is_some() && self.deaf().is_none() && !self.is_resting()
     }
 
-    /// Returns how surely an answer is for it, the least number first, or `None` if no answer can come. First comes what
-    /// was sent, then what waits to be sent, then what has ended. Last comes what strangers can answer.
-    pub fn claim(&self) -> Option<u8> {
+    /// Tests whether it had been sent in this round when a frame was received.
+    pub fn was_sent_by(&self, received_at: u32) -> bool {
+        self.sent.is_some_and(|sent| has_come(sent.first, received_at))
+    }
+
+    /// Returns how surely an answer is for it, the least number first, or `None` if the frame that was received then
+    /// cannot answer it. First comes what was sent, then what waits to be sent, then what has ended. Last comes what
+    /// strangers can answer.
+    pub fn claim(&self, received_at: u32) -> Option<u8> {
+        let was_sent = self.was_sent_by(received_at);
         Some(match self.state {
-            State::Due { .. } | State::Waiting { .. } if !self.is_under_way() => return None,
+            _ if !was_sent && self.tail_until().is_none() => return None,
             _ if self.asked == Asked::Strangers => 3,
             State::Resting { .. } => 2,
-            State::Due { .. } | State::Waiting { .. } => u8::from(self.sent == 0),
+            State::Due { .. } | State::Waiting { .. } => u8::from(!was_sent),
         })
     }
 
@@ -180,13 +199,13 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether an answer to what was sent, or to what was held before, can come in this round.
     pub const fn is_under_way(&self) -> bool {
-        self.sent > 0 || matches!(self.hold, Some(Hold { tail: Some(_), .. }))
+        self.sent.is_some() || matches!(self.hold, Some(Hold { tail: Some(_), .. }))
     }
 
     /// Tests whether an answer can come.
     pub fn is_open(&self, now: u32) -> bool {
         match self.state {
-            State::Due { .. } => self.sent > 0 || self.tail_until().is_some_and(|until| !has_come(until, now)),
+            State::Due { .. } => self.open_until().is_some_and(|until| !has_come(until, now)),
             State::Waiting { .. } => true,
             State::Resting { until, .. } => !has_come(until, now),
         }
@@ -194,32 +213,32 @@ impl<P: Protocol> Entry<P> {
 
     /// Returns until when an answer to what was sent, or to what it replaced, can come.
     pub fn open_until(&self) -> Option<u32> {
-        let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
         let own = match self.state {
             State::Resting { until, .. } => Some(until),
-            State::Due { .. } | State::Waiting { .. } if self.sent > 0 => Some(self.until().wrapping_add(late)),
-            State::Due { .. } | State::Waiting { .. } => None,
+            State::Due { .. } | State::Waiting { .. } => self.sent.map(|sent| sent.closes),
         };
         latest_of(own, self.tail_until())
     }
 
     /// Notes that the request is sent.
     pub fn start(&mut self, now: u32, group: Option<&mut Group>) {
-        if self.sent == 0 && self.unheard == 0 && self.leader.is_none_or(|leader| leader.tries == 0) {
+        if self.tries == 0 && self.unheard == 0 && self.leader.is_none_or(|leader| leader.tries == 0) {
             (self.begun, self.is_heard) = (now, false);
         }
         if let Some(group) = group {
-            group.ask(self.ticket, self.sent == 0);
+            group.ask(self.ticket, self.tries == 0, now);
         }
-        let deaf = self.deaf();
-        self.set_tail(deaf.map(Tail::Replaced));
         self.wait_for_leader();
         self.urgency = Urgency::Usual;
-        self.sent = self.sent.saturating_add(1);
+        self.tries = self.tries.saturating_add(1);
         self.unheard = self.unheard.saturating_add(1);
-        let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
+        let is_answered = self.request.replies() != Replies::Nobody;
+        let [wait, late] = if is_answered { [self.pace.wait, self.pace.late] } else { [0, 0] };
         let until = now.wrapping_add(wait);
-        self.state = State::Waiting { until: deaf.map_or(until, |deaf| later_of(until, deaf)) };
+        let closes = until.wrapping_add(late);
+        let again = |sent: Sent| Sent { closes: later_of(sent.closes, closes), ..sent };
+        self.sent = Some(self.sent.map_or(Sent { first: now, closes }, again));
+        self.state = State::Waiting { until: self.deaf().map_or(until, |deaf| later_of(until, deaf)) };
     }
 
     /// Ends a wait that has taken too long, or for which nobody is missing. Says how it ends. Sends the
@@ -235,7 +254,7 @@ impl<P: Protocol> Entry<P> {
             return None;
         }
         let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
-        if !is_done && self.leader.is_none() && self.sent < self.pace.tries {
+        if !is_done && self.leader.is_none() && self.tries < self.pace.tries {
             self.state = State::Due { from: now };
             return None;
         }
@@ -268,11 +287,14 @@ impl<P: Protocol> Entry<P> {
         received: Received<P>,
         is_refusal: bool,
         model: Option<u8>,
+        received_at: u32,
         group: Option<&mut Group>,
     ) -> Heard<P> {
         let ticket = self.ticket;
-        self.unheard = 0;
-        if !self.listens() {
+        if has_come(self.begun, received_at) {
+            self.unheard = 0;
+        }
+        if !self.listens() || !self.was_sent_by(received_at) {
             return Heard::Late { ticket, received };
         }
         let is_starting = is_refusal && received.is_starting();
@@ -295,8 +317,14 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Takes a frame of a wrong length for the answer if it refuses the request.
-    pub fn answered_short(&mut self, frame: &impl embedded_can::Frame, is_group_known: bool) -> Heard<P> {
-        if !self.listens() || self.request.refuses(frame) != Some(true) || self.is_told_to_wait(frame) {
+    pub fn answered_short(
+        &mut self,
+        frame: &impl embedded_can::Frame,
+        received_at: u32,
+        is_group_known: bool,
+    ) -> Heard<P> {
+        let is_open = self.listens() && self.was_sent_by(received_at);
+        if !is_open || self.request.refuses(frame) != Some(true) || self.is_told_to_wait(frame) {
             return Heard::Broken(self.ticket);
         }
         self.unheard = 0;
@@ -326,7 +354,7 @@ impl<P: Protocol> Entry<P> {
         let Some(period) = self.period.filter(|_| self.is_spare) else { return };
         let due = sent.wrapping_add(period.get());
         match self.state {
-            State::Due { from } if self.sent == 0 => {
+            State::Due { from } if self.tries == 0 => {
                 if is_later(due, from) {
                     (self.state, self.round) = (State::Due { from: due }, due);
                 }
@@ -340,10 +368,14 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Says of a frame that answers a request which has ended.
-    pub const fn too_late(&self, received: Received<P>) -> Option<Heard<P>> {
+    pub fn too_late(&self, received: Received<P>, received_at: u32) -> Option<Heard<P>> {
         let State::Resting { is_lost, .. } = self.state else { return None };
         let ticket = self.ticket;
-        Some(if is_lost { Heard::Late { ticket, received } } else { Heard::Twice { ticket, received } })
+        Some(if is_lost || !self.was_sent_by(received_at) {
+            Heard::Late { ticket, received }
+        } else {
+            Heard::Twice { ticket, received }
+        })
     }
 
     /// Returns the entry after it was cancelled, as long as an answer can come.
@@ -372,20 +404,44 @@ impl<P: Protocol> Entry<P> {
                     self.begin(self.round, now);
                 }
             }
-            State::Due { from } if self.tail_until().is_some_and(|until| has_come(until, now)) => self.begin(from, now),
-            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => {}
+            State::Due { from } => self.forget(from, now),
+            State::Waiting { .. } | State::Resting { .. } => {}
         }
         true
+    }
+
+    /// Forgets what was sent before if no answer to that can come any more. Then it listens, and is due since a time.
+    fn forget(&mut self, from: u32, now: u32) {
+        let is_over = |until: &u32| has_come(*until, now);
+        if self.deaf().as_ref().is_some_and(is_over) {
+            return self.begin(from, now);
+        }
+        if self.tail_until().as_ref().is_some_and(is_over) {
+            self.set_tail(None);
+        }
+        self.sent = self.sent.filter(|sent| !is_over(&sent.closes));
+        self.know_members();
     }
 
     /// Begins a round, and listens. What can still answer what was sent before is not forgotten.
     pub fn begin(&mut self, from: u32, now: u32) {
         let open = self.open_until().filter(|until| !has_come(*until, now));
         self.set_tail(open.map(Tail::Own));
-        if open.is_none() && self.asked == Asked::Strangers {
+        (self.state, self.sent, self.tries, self.has_answer) = (State::Due { from }, None, 0, false);
+        self.know_members();
+    }
+
+    /// Notes that no stranger can answer if nobody can any more.
+    fn know_members(&mut self) {
+        if !self.is_under_way() && self.asked == Asked::Strangers {
             self.asked = Asked::Several;
         }
-        (self.state, self.sent, self.has_answer) = (State::Due { from }, 0, false);
+    }
+
+    /// Returns from when on what waits to be sent is not answered any more, although it was sent before.
+    pub fn closes(&self) -> Option<u32> {
+        let is_due = matches!(self.state, State::Due { .. });
+        self.sent.filter(|_| is_due).map(|sent| sent.closes)
     }
 
     /// Returns when the wait for the last frame is over, or what comes after it.

@@ -2,6 +2,7 @@
 
 use super::entry::Asked;
 use super::{Client, Entry, Nodes, Ticket};
+use crate::clock::has_come;
 use crate::filter::IdFilter;
 use crate::{Addressed, Destination, Error, Protocol, Replies, Request, Route};
 
@@ -37,6 +38,8 @@ pub struct Group {
     unheard: Nodes,
     /// The request whose round this is. It began when these members were known.
     asked: Option<Ticket>,
+    /// When this round began.
+    since: u32,
 }
 
 /// Groups whose members are known.
@@ -62,8 +65,8 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
         let known = groups.iter().position(|group| group.is_some_and(|group| group.target == target));
         let place = known.or_else(|| groups.iter().position(Option::is_none));
         let before = known.and_then(|place| groups.get(place).copied()?).map_or(Nodes::NONE, |group| group.members);
-        let group =
-            (!members.is_empty()).then_some(Group { target, members, missing: members, unheard: members, asked: None });
+        let group = Group { target, members, missing: members, unheard: members, asked: None, since: 0 };
+        let group = (!members.is_empty()).then_some(group);
         match place.and_then(|place| groups.get_mut(place)) {
             Some(slot) => *slot = group,
             None if group.is_some() => return Err(NoMembers::Full),
@@ -98,8 +101,9 @@ impl<const G: usize> Groups<G> {
     }
 
     /// Notes that a module has spoken.
-    pub fn heard(&mut self, node: u8) {
-        self.0.iter_mut().flatten().for_each(|group| {
+    pub fn heard(&mut self, node: u8, received_at: u32) {
+        let groups = self.0.iter_mut().flatten().filter(|group| has_come(group.since, received_at));
+        groups.for_each(|group| {
             group.unheard.remove(node);
         });
     }
@@ -147,9 +151,10 @@ impl<const G: usize> Groups<G> {
 
 impl Group {
     /// Notes that a request is sent. If it is not the last one, or begins anew, nobody has answered.
-    pub fn ask(&mut self, ticket: Ticket, is_anew: bool) {
+    pub fn ask(&mut self, ticket: Ticket, is_anew: bool, now: u32) {
         if is_anew || self.asked != Some(ticket) {
-            (self.missing, self.unheard, self.asked) = (self.members, self.members, Some(ticket));
+            (self.missing, self.unheard) = (self.members, self.members);
+            (self.asked, self.since) = (Some(ticket), now);
         }
     }
 

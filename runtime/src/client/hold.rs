@@ -1,11 +1,9 @@
 //! What is held: sent until its echo agrees, and renewed.
 
-use core::num::NonZeroU32;
-
 use super::entry::{Asked, Entry, State};
 use super::group::Groups;
 use super::order::Leader;
-use super::{Client, Full, LONGEST, Ticket, has_one_answer};
+use super::{Client, Full, NO_PERIOD, Ticket, has_one_answer, round};
 use crate::clock::{earlier, has_come, latest_of};
 use crate::{Protocol, Received, Request};
 
@@ -30,12 +28,15 @@ pub enum NotHeld {
     Torn(Ticket),
     /// What it is to follow is not held, or would be replaced by it. Or what that follows would be.
     First,
+    /// The time from one renewal to the next is 0 ms.
+    Period,
 }
 
 impl core::fmt::Display for NotHeld {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Full => Full.fmt(formatter),
+            Self::Period => formatter.write_str(NO_PERIOD),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
             Self::First => formatter.write_str("what it is to follow is not held, or would be replaced"),
             Self::Torn(_) => formatter.write_str("something else is held of other modules that are partly the same"),
@@ -102,6 +103,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// Refuses a request
     /// - if there is no room for it,
+    /// - if `refresh` is 0 ms,
     /// - if nobody is known to answer it,
     /// - if the same message is held of some of the same modules and of others,
     /// - if it is held of another target, and the modules of one of them are not known.
@@ -112,8 +114,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
+        let now = self.clock.pass(now);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        let (period, hold) = (NonZeroU32::new(refresh.clamp(1, LONGEST)), Some(Hold { agrees, tail: None }));
+        let period = Some(round(refresh).ok_or(NotHeld::Period)?);
+        let hold = Some(Hold { agrees, tail: None });
         self.hold_entry(Entry { period, hold, ..entry }, now)
     }
 

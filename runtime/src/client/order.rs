@@ -55,6 +55,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
+        let now = self.clock.pass(now);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         let mut entries = self.entries.iter().flatten();
         let leader = entries.find(|held| held.ticket == first && held.is_held()).ok_or(NotHeld::First)?;
@@ -175,7 +176,7 @@ impl<P: Protocol> Entry<P> {
     /// Waits until what it follows is in effect anew. An answer that still comes is late.
     pub fn wait_anew(&mut self) {
         self.wait_for_leader();
-        if self.sent > 0 && !self.is_resting() {
+        if self.sent.is_some() && !self.is_resting() {
             self.rest(true);
         }
     }
@@ -184,7 +185,7 @@ impl<P: Protocol> Entry<P> {
     fn renew_soon(&mut self, now: u32) {
         match (self.state, self.period) {
             (State::Resting { until, .. }, Some(period)) => self.round = until.wrapping_sub(period.get()),
-            (State::Due { from }, _) if self.sent == 0 && !has_come(from, now) => {
+            (State::Due { from }, _) if self.tries == 0 && !has_come(from, now) => {
                 (self.state, self.round) = (State::Due { from: now }, now);
             }
             (State::Due { .. } | State::Waiting { .. } | State::Resting { .. }, _) => {}

@@ -149,7 +149,7 @@ pub fn client<T: Destination<Protocol: Addressed<Target = T> + Unknown> + Unknow
             Step::Send { frame, .. } => sink(frame),
             step => sink(step),
         }
-        match client.handle(&unknown_frame()) {
+        match client.handle(&unknown_frame(), unknown()) {
             Heard::Answer { ticket, received } | Heard::Refusal { ticket, received } => sink((ticket, received)),
             heard => sink(heard),
         }
@@ -185,7 +185,7 @@ fn bench<P: Addressed + Unknown>() {
     }
 }
 
-fn ticket(asked: Result<client::Ticket, client::Full>) {
+fn ticket(asked: Result<client::Ticket, impl core::fmt::Display>) {
     match asked {
         Ok(ticket) => sink(ticket),
         Err(full) => text(&full),

@@ -77,7 +77,7 @@ fn a_client_asks_and_knows_the_answer() {
     let asked = client.ask(request, 0).expect("there is room for eight requests");
     assert_eq!(client.poll(0), Step::Send { ticket: asked, frame: *request.frame() });
     assert_eq!(client.poll(0), Step::Wait(Some(100)));
-    let heard = client.handle(&frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]));
+    let heard = client.handle(&frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]), 30);
     assert!(matches!(heard, Heard::Answer { ticket, .. } if ticket == asked));
 }
 
@@ -91,9 +91,9 @@ fn a_client_holds_a_speed_until_the_winch_has_it() {
     assert_eq!(client.poll(20), Step::Send { ticket: stop, frame: *pull(0).frame() });
     // This may be the answer to the old speed. So the client asks once more when none can come.
     let echo = frame(0x0B20_0112, [0x00, 0x00, 0x19, 0x00]);
-    assert!(matches!(client.handle(&echo), Heard::Late { ticket, .. } if ticket == stop));
+    assert!(matches!(client.handle(&echo, 60), Heard::Late { ticket, .. } if ticket == stop));
     assert_eq!(client.poll(200), Step::Send { ticket: stop, frame: *pull(0).frame() });
-    assert!(matches!(client.handle(&echo), Heard::Answer { ticket, .. } if ticket == stop));
+    assert!(matches!(client.handle(&echo, 230), Heard::Answer { ticket, .. } if ticket == stop));
 }
 
 #[test]

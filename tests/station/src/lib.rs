@@ -132,7 +132,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Takes a frame from the bus.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame, now: u32) {
         self.next = now;
-        match self.client.handle(frame) {
+        match self.client.handle(frame, now) {
             Heard::Answer { ticket, received } => self.answered(Some(ticket), &received, now),
             // A late answer tells of no request, but of the module.
             Heard::Late { received, .. } => self.answered(None, &received, now),
@@ -140,7 +140,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
                 let node = received.node();
                 self.forget(|module| node == Some(module.node.into()));
             }
-            Heard::Other(received) if received.is_to_module() => self.give_way(now),
+            Heard::Rival(_) => self.give_way(now),
             // What is held or read is asked again in the next round.
             _ => {}
         }
@@ -164,7 +164,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
                 Step::Lost(ticket) => self.forget(|module| module.watch == Some(ticket)),
                 Step::Silent(node) => self.forget(|module| module.node == node),
                 // A module that is back tells its state, and groups are asked again.
-                Step::Done(_) | Step::Missing { .. } | Step::Back(_) => {}
+                Step::Done(_) | Step::Missing { .. } | Step::Back(_) | Step::ClockBack(_) => {}
                 Step::Wait(until) => {
                     let rounds = self.modules.iter().map(|module| module.due).chain(until);
                     let latest = now.wrapping_add(self.settings.round);
@@ -292,7 +292,7 @@ impl<P: Quantities + Addressed> Module<P> {
         Self {
             node,
             group: None,
-            duty: Duty::NONE,
+            duty: Duty::new(node),
             voltage_mv: None,
             current_ma: None,
             status: None,

@@ -200,7 +200,7 @@ fn poll(seed: u64) {
     for now in 0..30_000 {
         while let Some(event) = bench.poll(now) {
             let Event::Frame(frame) = event else { panic!("seed {seed}: {event:?}") };
-            match client.handle(&frame) {
+            match client.handle(&frame, now) {
                 Heard::Answer { received, .. } | Heard::Twice { received, .. } | Heard::Late { received, .. } => {
                     known.entry(received.node().expect("a battery")).or_default().hear(&received);
                 }

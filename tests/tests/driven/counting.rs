@@ -87,7 +87,7 @@ impl Counter {
     }
 
     fn handle(&mut self, frame: &Frame, now: u32) {
-        match self.client.handle(frame) {
+        match self.client.handle(frame, now) {
             Heard::Starting { .. } => self.pause(now),
             Heard::Answer { ticket, .. } | Heard::Refusal { ticket, .. } => self.ended(ticket, true, now),
             _ => {}

@@ -64,7 +64,7 @@ fn labels_are_read_in_parts_although_frames_get_lost() {
     for now in 0..60_000 {
         while let Some(event) = bench.poll(now) {
             let Event::Frame(frame) = event else { panic!("{event:?}") };
-            let _ = client.handle(&frame);
+            let _ = client.handle(&frame, now);
             for outcome in assembler.receive(&frame, now) {
                 let Outcome::Whole(whole) = outcome else { continue };
                 let node = whole.identifier().address;

@@ -163,7 +163,12 @@ impl<P: Quantities + Addressed> Driver<P> {
             match self.client.poll(now) {
                 Step::Send { frame, .. } => return Some(frame),
                 Step::Wait(_) => return None,
-                Step::Lost(_) | Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+                Step::Lost(_)
+                | Step::Done(_)
+                | Step::Missing { .. }
+                | Step::Silent(_)
+                | Step::Back(_)
+                | Step::ClockBack(_) => {}
             }
         }
     }
@@ -206,7 +211,7 @@ fn drive<P: Quantities + Addressed<Target: PartialEq>>(facts: &Facts<P>, seed: u
     for now in 0..END {
         while let Some(event) = bench.poll(now) {
             match event {
-                Event::Frame(frame) => match driver.client.handle(&frame) {
+                Event::Frame(frame) => match driver.client.handle(&frame, now) {
                     Heard::Answer { received, .. } | Heard::Late { received, .. } | Heard::Other(received) => {
                         driver.hear(&received, now);
                     }

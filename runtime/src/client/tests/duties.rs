@@ -2,8 +2,8 @@
 //!
 //! The reply to a read says whether it is on. The read also takes the part of the switch-on.
 
-use super::PACE;
 use super::order::{Asking, REFRESH, echo, on, sent, set};
+use super::{PACE, Polled};
 use crate::client::{Duty, Heard, Output, repeats};
 use crate::tests::heaters::{Heat, Message, frame};
 use crate::{Frame, Request};
@@ -16,7 +16,7 @@ struct Told {
 
 impl Told {
     const fn nothing() -> Self {
-        Self { client: Asking::new(PACE), duty: Duty::NONE }
+        Self { client: Asking::new(PACE), duty: Duty::new(3) }
     }
 
     fn hold<const N: usize>(&mut self, requests: [Request<Message, Heat>; N], now: u32) {
@@ -26,7 +26,7 @@ impl Told {
 
     /// Takes a reply. Returns whether it confirms what is held.
     fn hears(&mut self, frame: &Frame) -> bool {
-        let Heard::Answer { ticket, received } = self.client.handle(frame) else { panic!("{frame} answers nothing") };
+        let Heard::Answer { ticket, received } = self.client.hear(frame) else { panic!("{frame} answers nothing") };
         self.duty.answered(ticket, &received)
     }
 
@@ -93,4 +93,21 @@ fn what_is_held_again_goes_on_and_anything_else_is_to_be_confirmed() {
     told.duty.end(&mut told.client);
     told.hold([], 300);
     assert_eq!(told.reads(0, 400), Output::Off);
+}
+
+#[test]
+fn an_answer_of_another_module_says_nothing_of_this_one() {
+    let mut told = Told::nothing();
+    assert_eq!(told.duty.node(), 3);
+    told.hold([set(0.0)], 0);
+    assert_eq!(sent(&mut told.client, 0..1), [(0, *set(0.0).frame())]);
+    assert!(told.hears(&echo(0)));
+    assert_eq!(told.reads(0, 300), Output::Off);
+    let mut other = Duty::new(4);
+    other.hold(&mut told.client, [set(0.0).untyped()], REFRESH, repeats, 350).expect("it is held");
+    let ticket = told.client.ask(on(3), 600).expect("there is room");
+    assert_eq!(sent(&mut told.client, 600..640), [(600, *on(3).frame())]);
+    let Heard::Answer { received, .. } = told.client.hear(&frame(0x010C_F003, [1, 0, 0, 0])) else { panic!("asked") };
+    assert_eq!([other.answered(ticket, &received), told.duty.answered(ticket, &received)], [false; 2]);
+    assert_eq!([other.output(), told.duty.output()], [Output::Unknown, Output::On]);
 }

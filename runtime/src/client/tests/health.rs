@@ -14,7 +14,7 @@ fn a_module_that_hears_nothing_else_is_kept_alive() {
     client.keep_alive(heat(3), 3000, 0).expect("room");
     for round in [0, 3000, 6000] {
         assert_eq!(client.step(round), sent(3));
-        assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
+        assert!(matches!(client.hear(&answer(3)), Heard::Answer { .. }));
         assert_eq!(client.step(round + 2999), Step::Wait(Some(round + 3000)));
     }
 }
@@ -25,11 +25,11 @@ fn an_answered_request_puts_off_what_keeps_a_module_alive_and_a_lost_one_does_no
         let mut client = Asking::new(PACE);
         client.keep_alive(heat(3), 3000, 0).expect("room");
         assert_eq!(client.step(0), sent(3));
-        assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
+        assert!(matches!(client.hear(&answer(3)), Heard::Answer { .. }));
         client.ask(heat(asked), 2000).expect("room");
         assert_eq!(client.step(2000), sent(asked));
         if is_answered {
-            assert!(matches!(client.handle(&answer(asked)), Heard::Answer { .. }));
+            assert!(matches!(client.hear(&answer(asked)), Heard::Answer { .. }));
         }
         (2001..9000).find(|now| matches!(client.step(*now), Step::Send { .. }) && *now > 2300)
     };
@@ -42,7 +42,7 @@ fn what_keeps_a_module_alive_waits_for_what_was_answered_just_before() {
     let ask = client.ask(heat(3), 0).expect("room");
     client.keep_alive(heat(3), 3000, 5).expect("room");
     assert_eq!(client.step(5), sent(3));
-    assert!(matches!(client.handle(&answer(3)), Heard::Answer { ticket, .. } if ticket == ask));
+    assert!(matches!(client.hear(&answer(3)), Heard::Answer { ticket, .. } if ticket == ask));
     assert_eq!((6..9000).find(|now| matches!(client.step(*now), Step::Send { .. })), Some(3005));
 }
 
@@ -56,7 +56,7 @@ fn all_modules_together_are_kept_alive_in_each_period() {
     for now in 0..9000 {
         let step = client.step(now);
         if step == sent(3) {
-            assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
+            assert!(matches!(client.hear(&answer(3)), Heard::Answer { .. }));
         }
         rounds += u32::from(step == Step::Done(ticket));
     }
@@ -71,9 +71,9 @@ fn a_module_is_silent_when_a_request_is_lost_and_back_when_it_sends_anything() {
     assert_eq!(steps, [sent(3), sent(3), Step::Lost(ticket), Step::Silent(3)]);
     assert_eq!(*client.silent(), Nodes::from([3]));
     // The frame of another module changes nothing.
-    assert!(matches!(client.handle(&frame(0x010B_F004, [0; 4])), Heard::Other(_)));
+    assert!(matches!(client.hear(&frame(0x010B_F004, [0; 4])), Heard::Other(_)));
     assert_eq!(client.step(201), Step::Wait(Some(300)));
-    assert!(matches!(client.handle(&frame(0x0107_F003, [2, 0xF0, 0, 0])), Heard::Late { .. }));
+    assert!(matches!(client.hear(&frame(0x0107_F003, [2, 0xF0, 0, 0])), Heard::Late { .. }));
     assert_eq!([client.step(202), client.step(202)], [Step::Back(3), Step::Wait(Some(300))]);
     assert!(client.silent().is_empty());
 }
@@ -84,7 +84,7 @@ fn a_module_that_says_something_else_is_not_silent() {
     let ticket = client.hold(heat(3), 1000, |_, _| false, 0).expect("room");
     for now in [0, 100] {
         assert_eq!(client.step(now), sent(3));
-        assert!(matches!(client.handle(&answer(3)), Heard::NotInEffect { .. }));
+        assert!(matches!(client.hear(&answer(3)), Heard::NotInEffect { .. }));
     }
     assert_eq!([client.step(200), client.step(200)], [Step::Lost(ticket), Step::Wait(Some(300))]);
 }
@@ -97,7 +97,7 @@ fn a_module_that_answers_the_first_of_an_order_and_not_the_second_is_not_silent(
     let second = client.hold_after(first, on, |_, _| true, 0).expect("room");
     for (round, now) in [(0, 20), (200, 220)] {
         assert_eq!(client.step(round), sent(3));
-        assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
+        assert!(matches!(client.hear(&answer(3)), Heard::Answer { .. }));
         assert_eq!(client.step(now), frame_sent(*on.frame()));
         let end = client.step(now + 100);
         assert_eq!(end == Step::Lost(second), round == 200);
@@ -113,7 +113,7 @@ fn a_program_is_to_poll_when_what_keeps_a_module_alive_goes_before_others() {
         [To::Heater(5), To::Group(2), To::Heater(4)].map(|target| Heat::ask(target).expect("a legal request"));
     client.ask(single, 0).expect("room");
     assert_eq!(client.step(0), frame_sent(*single.frame()));
-    assert!(matches!(client.handle(&frame(0x010C_F005, [0; 4])), Heard::Answer { .. }));
+    assert!(matches!(client.hear(&frame(0x010C_F005, [0; 4])), Heard::Answer { .. }));
     // The group waits until 300 ms, when nothing can still answer what heater 5 was asked.
     client.ask(group, 5).expect("room");
     client.keep_alive(alive, 5000, 60).expect("room");

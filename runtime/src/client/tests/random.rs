@@ -170,7 +170,7 @@ impl Run {
             match self.clients[place].poll(now) {
                 Step::Send { ticket, frame } => sent.push((ticket, frame)),
                 Step::Done(ticket) => self.confirm(ticket),
-                Step::Lost(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+                Step::Lost(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) | Step::ClockBack(_) => {}
                 Step::Wait(wake) => {
                     self.wake = if place == 1 { wake } else { self.wake };
                     return sent;
@@ -323,7 +323,7 @@ impl Run {
     }
 
     fn hear(&mut self, reply: &Reply, now: u32) {
-        let [heard, _] = self.clients.each_mut().map(|client| client.handle(&reply.frame));
+        let [heard, _] = self.clients.each_mut().map(|client| client.handle(&reply.frame, now));
         let (ticket, counts) = match heard {
             Heard::Answer { ticket, .. } | Heard::Refusal { ticket, .. } | Heard::NotInEffect { ticket, .. } => {
                 (ticket, true)
@@ -332,6 +332,7 @@ impl Run {
             Heard::Starting { .. }
             | Heard::ShortRefusal(_)
             | Heard::Broken(_)
+            | Heard::Rival(_)
             | Heard::Other(_)
             | Heard::Unrecognised(_) => {
                 self.wrong(now, "an answer is taken for something else");

@@ -60,13 +60,13 @@ fn replaced(old_w: f64, new_w: f64) -> (Asking, Ticket) {
     hold(&mut client, To::Heater(3), old_w, 0);
     assert_eq!(client.step(0), sent(&power(To::Heater(3), old_w)));
     let steps = if old_w > 0.0 { 10 } else { 0 };
-    assert!(matches!(client.handle(&echo(3, steps)), Heard::Answer { .. }));
+    assert!(matches!(client.hear(&echo(3, steps)), Heard::Answer { .. }));
     assert_eq!(client.step(50), Step::Wait(Some(300)));
     let held = hold(&mut client, To::Heater(3), new_w, 250);
     assert_eq!(client.step(250), sent(&power(To::Heater(3), new_w)));
     client.ask(read(1), 349).expect("room");
     assert_eq!(client.step(349), sent(&read(1)));
-    assert!(matches!(client.handle(&frame(0x010C_F001, [0; 4])), Heard::Answer { .. }));
+    assert!(matches!(client.hear(&frame(0x010C_F001, [0; 4])), Heard::Answer { .. }));
     assert_eq!(client.step(360), Step::Wait(Some(399)));
     (client, held)
 }
@@ -85,10 +85,10 @@ fn an_echo_of_what_was_held_is_no_answer_to_a_stop_that_is_lost() {
     let stop = client.ask(off, 361).expect("room");
     client.hurry(stop, 361);
     assert_eq!(times_of(&mut client, &off, 361..450), []);
-    assert!(matches!(client.handle(&echo(3, 150)), Heard::Late { ticket, .. } if ticket == on));
+    assert!(matches!(client.hear(&echo(3, 150)), Heard::Late { ticket, .. } if ticket == on));
     // No echo of the switch-on can come from 550 ms on. The bus loses the first frame.
     assert_eq!(times_of(&mut client, &off, 450..700), [550, 650]);
-    assert!(matches!(client.handle(&echo(3, 0)), Heard::Answer { ticket, .. } if ticket == stop));
+    assert!(matches!(client.hear(&echo(3, 0)), Heard::Answer { ticket, .. } if ticket == stop));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_set_point_is_not_answered_by_an_older_one() {
     let new = client.ask(power(To::Heater(3), 300.0), 361).expect("room");
     client.hurry(new, 361);
     assert_eq!(times_of(&mut client, &power(To::Heater(3), 300.0), 361..450), []);
-    assert!(matches!(client.handle(&echo(3, 20)), Heard::Late { ticket, .. } if ticket == old));
+    assert!(matches!(client.hear(&echo(3, 20)), Heard::Late { ticket, .. } if ticket == old));
     assert_eq!(times_of(&mut client, &power(To::Heater(3), 300.0), 450..560), [550]);
 }
 
@@ -107,7 +107,7 @@ fn a_read_is_not_refused_by_the_refusal_of_a_write() {
     let read = client.ask(get(), 361).expect("room");
     client.hurry(read, 361);
     assert_eq!(times_of(&mut client, &get(), 361..450), []);
-    assert!(matches!(client.handle(&refusal(3)), Heard::Late { ticket, .. } if ticket == held));
+    assert!(matches!(client.hear(&refusal(3)), Heard::Late { ticket, .. } if ticket == held));
     assert_eq!(times_of(&mut client, &get(), 450..640), [550]);
 }
 
@@ -117,19 +117,19 @@ fn a_refusal_of_what_was_held_does_not_end_the_round_of_a_stop() {
     let stop = hold(&mut client, To::Heater(3), 0.0, 361);
     let off = power(To::Heater(3), 0.0);
     assert_eq!(times_of(&mut client, &off, 361..450), [399]);
-    assert!(matches!(client.handle(&refusal(3)), Heard::Late { ticket, .. } if ticket == stop));
+    assert!(matches!(client.hear(&refusal(3)), Heard::Late { ticket, .. } if ticket == stop));
     assert_eq!(times_of(&mut client, &off, 450..600), [550]);
-    assert!(matches!(client.handle(&echo(3, 0)), Heard::Answer { ticket, .. } if ticket == stop));
+    assert!(matches!(client.hear(&echo(3, 0)), Heard::Answer { ticket, .. } if ticket == stop));
 }
 
 #[test]
 fn an_answer_that_comes_before_the_request_is_sent_once_more_is_late() {
     let (mut client, held) = replaced(0.0, 1500.0);
-    assert!(matches!(client.handle(&echo(3, 150)), Heard::Late { ticket, .. } if ticket == held));
+    assert!(matches!(client.hear(&echo(3, 150)), Heard::Late { ticket, .. } if ticket == held));
     let short = Frame::new_raw(0x0107_F003, true, [2, 0xF2, 0, 0, 0, 0, 0, 0], 2);
-    assert!(matches!(client.handle(&short), Heard::Broken(ticket) if ticket == held));
+    assert!(matches!(client.hear(&short), Heard::Broken(ticket) if ticket == held));
     assert_eq!(client.step(399), sent(&power(To::Heater(3), 1500.0)));
-    assert!(matches!(client.handle(&echo(3, 150)), Heard::Answer { ticket, .. } if ticket == held));
+    assert!(matches!(client.hear(&echo(3, 150)), Heard::Answer { ticket, .. } if ticket == held));
 }
 
 /// Lets what is held listen, and then wait for something that is never in effect.
@@ -183,7 +183,7 @@ fn an_answer_is_for_what_was_sent_and_not_for_what_waits() {
     assert_eq!(client.step(50), sent(&power(To::Heater(5), 0.0)));
     // It takes the room of the first, and is deaf until 300 ms.
     hold(&mut client, GROUP, 0.0, 60);
-    assert!(matches!(client.handle(&echo(5, 0)), Heard::Answer { ticket, .. } if ticket == asked));
+    assert!(matches!(client.hear(&echo(5, 0)), Heard::Answer { ticket, .. } if ticket == asked));
 }
 
 /// Asks a group whose members are not known, and tells the client who they are.
@@ -200,7 +200,7 @@ fn a_module_that_is_no_member_any_more_can_still_answer_what_the_group_was_asked
     let (mut client, group) = asked_before_members();
     client.ask(power(To::Heater(7), 0.0), 1).expect("room");
     assert_eq!(times_of(&mut client, &power(To::Heater(7), 0.0), 1..90), []);
-    assert!(matches!(client.handle(&echo(7, 150)), Heard::Answer { ticket, .. } if ticket == group));
+    assert!(matches!(client.hear(&echo(7, 150)), Heard::Answer { ticket, .. } if ticket == group));
     assert_eq!(client.step(100), Step::Done(group));
     assert_eq!(times_of(&mut client, &power(To::Heater(7), 0.0), 100..400), [300]);
 }
@@ -211,7 +211,7 @@ fn a_stranger_is_not_missing() {
     assert_eq!(client.step(100), sent(&power(GROUP, 1500.0)));
     for (heater, is_new) in [(1, true), (7, false), (4, true)] {
         let answer = if heater == 7 { refusal(7) } else { echo(heater, 150) };
-        let heard = client.handle(&answer);
+        let heard = client.hear(&answer);
         assert_eq!(matches!(heard, Heard::Answer { ticket, .. } if ticket == group), is_new);
         assert_eq!(matches!(heard, Heard::Twice { .. }), !is_new);
     }
@@ -224,7 +224,7 @@ fn what_replaces_a_request_to_a_group_is_open_to_those_who_were_its_members() {
     let stop = hold(&mut client, GROUP, 0.0, 10);
     client.ask(power(To::Heater(7), 0.0), 11).expect("room");
     assert_eq!(times_of(&mut client, &power(To::Heater(7), 0.0), 11..150), []);
-    assert!(matches!(client.handle(&echo(7, 150)), Heard::Late { ticket, .. } if ticket == stop));
+    assert!(matches!(client.hear(&echo(7, 150)), Heard::Late { ticket, .. } if ticket == stop));
 }
 
 #[test]
@@ -232,16 +232,16 @@ fn only_what_was_sent_before_is_open_to_those_who_are_no_members() {
     let mut client = Asking::new(PACE);
     client.members(GROUP, [1, 4]).expect("room");
     let group = client.every(1000, power(GROUP, 1500.0), 0).expect("room");
-    let other = client.every(1000, power(To::Heater(2), 1500.0), 500).expect("room");
-    let is_answered_by = |client: &mut Asking, heater| matches!(client.handle(&echo(heater, 150)), Heard::Answer { ticket, .. } if ticket == group);
+    let is_answered_by = |client: &mut Asking, heater| matches!(client.hear(&echo(heater, 150)), Heard::Answer { ticket, .. } if ticket == group);
     assert_eq!(client.step(0), sent(&power(GROUP, 1500.0)));
+    let other = client.every(1000, power(To::Heater(2), 1500.0), 0).expect("room");
     // The same members again, other ones, and those again.
     client.members(GROUP, [1, 4]).expect("room");
     assert!(!is_answered_by(&mut client, 7));
     client.members(GROUP, [1, 4, 7]).expect("room");
     client.members(GROUP, [1, 4]).expect("room");
     assert!(is_answered_by(&mut client, 7));
-    assert!(matches!(client.handle(&echo(2, 150)), Heard::Answer { ticket, .. } if ticket != other));
+    assert!(matches!(client.hear(&echo(2, 150)), Heard::Answer { ticket, .. } if ticket != other));
     let _ = times_of(&mut client, &power(GROUP, 1500.0), 1..1001);
     assert!(!is_answered_by(&mut client, 7));
     assert!(is_answered_by(&mut client, 1));

@@ -139,6 +139,7 @@ impl Trial {
                         self.wrong(now, "back twice");
                     }
                 }
+                Step::ClockBack(_) => self.wrong(now, "the clock goes back"),
                 Step::Wait(_) => break,
             }
         }
@@ -206,7 +207,7 @@ impl Trial {
     }
 
     fn hear(&mut self, frame: &Frame, now: u32) {
-        match self.client.handle(frame) {
+        match self.client.handle(frame, now) {
             Heard::Answer { ticket, received } => {
                 self.end(ticket, 0, Some(*received.content()), now);
                 self.confirm(ticket, now);
@@ -222,6 +223,7 @@ impl Trial {
             Heard::Starting { .. }
             | Heard::Broken(_)
             | Heard::Twice { .. }
+            | Heard::Rival(_)
             | Heard::Other(_)
             | Heard::Unrecognised(_) => {}
         }

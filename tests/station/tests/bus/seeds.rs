@@ -250,7 +250,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         for now in start..start + 20_000 {
             while let Some(event) = self.bus.bench.poll(now) {
                 let Event::Frame(frame) = event else { continue };
-                match client.handle(&frame) {
+                match client.handle(&frame, now) {
                     Heard::Answer { ticket, received } => {
                         let said = received.setting(Quantity::OUTPUT_VOLTAGE);
                         let own = asked.get_mut(&ticket).ok_or("an answer to what was not asked")?;
@@ -273,6 +273,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
                     }
                     Step::Lost(ticket) => asked.get_mut(&ticket).ok_or("what was not asked is lost")?.lost += 1,
                     Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+                    Step::ClockBack(_) => return Err("the clock goes back".into()),
                     Step::Wait(_) => break,
                 }
             }
