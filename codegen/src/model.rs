@@ -23,6 +23,7 @@ mod quantity;
 mod recognition;
 mod set;
 mod signal;
+mod silence;
 mod timing;
 mod transport;
 mod unit;
@@ -55,6 +56,7 @@ pub use set::{Continuation, Set};
 pub use signal::{
     ByteRun, Conduct, Enumeration, NamedValue, OfModel, OutOfRange, Range, Severity, Signal, StatusBit, StatusWord,
 };
+pub use silence::{AfterSilence, Silence};
 pub(crate) use timing::nanoseconds;
 pub use timing::{TimeRole, Timing};
 pub use transport::{Groups, Isotp, Standard, Transport, TransportFrame};
@@ -116,6 +118,8 @@ pub struct Protocol {
     pub models: Table<ModelId, DeviceModel>,
     /// Times that the document states.
     pub timing: Table<TimingId, Timing>,
+    /// What a device does after the controller was silent, if the spec says it.
+    pub after_silence: Option<Silence>,
     /// Procedures that the document describes.
     pub procedures: Vec<Procedure>,
     /// Examples of whole messages in the order of the spec, then those of the sequences.
@@ -207,6 +211,7 @@ impl Protocol {
         docs.extend(self.models.iter().map(|model| &model.doc));
         docs.extend(self.models.iter().flat_map(|model| &model.types).map(|known| &known.doc));
         docs.extend(self.timing.iter().map(|timing| &timing.doc));
+        docs.extend(self.after_silence.iter().map(|silence| &silence.doc));
         docs.extend(self.procedures.iter().map(|procedure| &procedure.doc));
         docs.extend(self.sequences.iter());
         docs.extend(self.types.iter());

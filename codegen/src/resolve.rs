@@ -29,6 +29,7 @@ mod sending;
 mod sets;
 mod sides;
 mod signals;
+mod silence;
 mod status;
 mod texts;
 mod timing;
@@ -125,6 +126,7 @@ impl Resolver<'_> {
         self.tables.units = self.units();
         let timing = self.timing();
         self.tables.models = self.models();
+        let after_silence = self.after_silence();
         let procedures = self.procedures();
         let errata = self.errata();
         self.tables.absent_are_ones = self.absent_of_protocol();
@@ -169,6 +171,7 @@ impl Resolver<'_> {
             recognition: Recognition::new(directions, &frames, &self.tables.selectors),
             frames,
             timing,
+            after_silence,
             procedures,
             examples,
             long_examples: self.tables.long_examples,

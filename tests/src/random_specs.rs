@@ -94,6 +94,10 @@ impl Draft {
             root.put("absent", "none");
         }
         let errata = self.all_errata();
+        if self.chance(20) {
+            let after_silence = self.after_silence();
+            root.put("after_silence", after_silence);
+        }
         let timing = self.timing();
         self.name_models();
         let units = self.own_units();
@@ -181,6 +185,13 @@ impl Draft {
             errata.put(name, erratum);
         }
         errata
+    }
+
+    fn after_silence(&mut self) -> Map {
+        let output = self.one(&["off", "resumes", "starts", "keeps", "unknown"]);
+        let mut after_silence = Map::of([("output", output)]);
+        self.remark(&mut after_silence);
+        after_silence
     }
 
     fn timing(&mut self) -> Map {

@@ -2,16 +2,18 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::model::{Procedure, Protocol, Quantity, Timing};
+use canspec_codegen::model::{Procedure, Protocol, Quantity, Silence, Timing};
 use canspec_codegen::text::Text;
 
 use super::remarks::{errata, sentences, title, words};
 use super::rows;
 use crate::columns::Row;
 
-/// Writes a table of the times and one of the procedures, if there are any.
+/// Writes a table of the times, one of what silence does and one of the procedures, if there are any.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     times(out, protocol, protocol.timing.iter())?;
+    let silence: Vec<_> = protocol.after_silence.iter().map(silence).collect();
+    rows::table(out, &["AFTER SILENCE", "SECTION"], &silence)?;
     let procedures: Vec<_> = protocol.procedures.iter().flat_map(procedure).collect();
     rows::table(out, &["PROCEDURE", "SECTION"], &procedures)
 }
@@ -41,6 +43,15 @@ fn timing(protocol: &Protocol, timing: &Timing) -> Row {
     let meaning: Vec<_> = [title(doc), doc.note.as_ref().map(Text::for_people)].into_iter().flatten().collect();
     let last = [meaning.join("; ")].into_iter().chain(errata(doc)).collect::<Vec<_>>().join(" ");
     Row { cells, last: split(&last), separator: " ", ..Row::default() }
+}
+
+/// Returns a row for what silence does.
+fn silence(silence: &Silence) -> Row {
+    let Silence { doc, output, .. } = silence;
+    let meaning = format!("The output {}.", output.meaning());
+    let meaning: Vec<_> = title(doc).map(str::to_owned).into_iter().chain([meaning]).collect();
+    let cells = vec![output.name().to_owned(), words(doc.section.as_ref())];
+    Row { cells, last: split(&meaning.join(": ")), separator: " ", below: sentences(doc) }
 }
 
 /// Says what a time is for, and what it is about.

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/section.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::Protocol;
+use crate::model::{AfterSilence, Protocol};
 use crate::rule::rules;
 
 rules! {
@@ -13,7 +13,10 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let models = protocol.models.iter().map(|model| ("model", &model.name, &model.doc));
     let timing = protocol.timing.iter().map(|timing| ("timing", &timing.name, &timing.doc));
     let procedures = protocol.procedures.iter().map(|known| ("procedure", &known.name, &known.doc));
-    for (what, name, doc) in messages.chain(models).chain(timing).chain(procedures) {
+    let silent = ["after_silence".to_owned()];
+    let stated = protocol.after_silence.iter().filter(|silence| silence.output != AfterSilence::Unknown);
+    let silence = stated.zip(&silent).map(|(silence, name)| ("entry", name, &silence.doc));
+    for (what, name, doc) in messages.chain(models).chain(timing).chain(procedures).chain(silence) {
         if doc.section.is_none() {
             let text = format!("the {what} `{name}` has no section");
             let help =

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::model::NoteRule;
-use crate::model::{Failure, Kind, TimeRole, Unit};
+use crate::model::{AfterSilence, Failure, Kind, TimeRole, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
 use crate::words::{
@@ -64,12 +64,13 @@ const FORMS: [(&str, &str, Form); 16] = [
 ];
 
 /// Returns the keys whose value is one of a few words, with the struct that has the key.
-fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 13] {
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 14] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
         ("Access", "answers", answers.clone()),
         ("Access", "from", SIDES.map(|(word, _)| word).to_vec()),
         ("Access", "in", kinds()),
+        ("AfterSilence", "output", AfterSilence::ALL.map(AfterSilence::name).to_vec()),
         ("Allowance", "rule", RULES.iter().map(|rule| rule.name).collect()),
         ("Erratum", "kind", ERRATUM_KINDS.to_vec()),
         ("Example", "fails", Failure::ALL.map(|(_, word)| word).to_vec()),

@@ -114,6 +114,8 @@ pub struct Spec {
     /// Times that the document states, by name: `{watchdog: {time: 10 s}}`; none if absent.
     #[serde(default)]
     pub timing: Map<Timing>,
+    /// What a device does after the controller was silent: `{output: resumes}`; the document does not say it if absent.
+    pub after_silence: Option<AfterSilence>,
     /// Procedures by name, each a list of steps: `{switch_on: {steps: [Apply the input power, Close the relay]}}`; none
     /// if absent.
     #[serde(default)]
@@ -319,6 +321,26 @@ pub struct Timing {
     /// What else a reader must know, in one sentence: `any command counts`.
     pub note: Option<Words>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
+    pub section: Option<Words>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
+    #[serde(default)]
+    pub erratum: Names,
+}
+
+/// What a device does after the controller was silent.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct AfterSilence {
+    /// What becomes of its output: `off`, `resumes`, `starts`, `keeps` or `unknown`. After `off` it stays off until it is
+    /// switched on. What `resumes` goes off, and comes back when the device hears any request. A device that `starts`
+    /// delivers by itself, also if it was switched off. One that `keeps` goes on as it was.
+    pub output: String,
+    /// What it is, in a few words without a full stop: `Output after silence`.
+    pub title: Option<Words>,
+    /// What else a reader must know, in one sentence: `a module that was off stays off`.
+    pub note: Option<Words>,
+    /// Section of the document that says so, in quotes: `"2.4"`.
     pub section: Option<Words>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]

@@ -244,6 +244,7 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(4);
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const TIMING: Timing = TIMING;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Off;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn way(shown: &Shown) -> Option<Way> {

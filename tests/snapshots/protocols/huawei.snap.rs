@@ -3448,6 +3448,7 @@ impl Protocol for Message {
         START_UP_MODE,
     ];
     const TIMING: Timing = TIMING;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Starts;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 

@@ -2207,6 +2207,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
     const STARTING: Option<u64> = Some(7);
     const TIMING: Timing = TIMING;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Resumes;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn way(shown: &Shown) -> Option<Way> {

@@ -5871,6 +5871,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
     const STARTING: Option<u64> = Some(3);
     const TIMING: Timing = TIMING;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Starts;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
     const FOREIGN_LIKE_OWN: bool = true;

@@ -1082,6 +1082,7 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const TIMING: Timing = TIMING;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Keeps;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn way(shown: &Shown) -> Option<Way> {

@@ -241,6 +241,20 @@ impl<'a> Timing<'a> {
     }
 }
 
+/// What a device does after the controller was silent.
+#[derive(Serialize)]
+pub struct Silence<'a> {
+    output: &'static str,
+    #[serde(flatten)]
+    remarks: Remarks<'a>,
+}
+
+impl<'a> From<&'a model::Silence> for Silence<'a> {
+    fn from(known: &'a model::Silence) -> Self {
+        Self { output: known.output.name(), remarks: (&known.doc).into() }
+    }
+}
+
 #[derive(Serialize)]
 pub struct Procedure<'a> {
     name: &'a str,

@@ -7,7 +7,7 @@ use super::plan::Plan;
 use super::plan::doc::{self, Comment};
 use super::plan::usage::time;
 use crate::emit::Scaled;
-use crate::model::{Doc, Document, Protocol, Quantity, Timing};
+use crate::model::{Doc, Document, Protocol, Quantity, Silence, Timing};
 use crate::text::Text;
 
 /// What the documentation is written from.
@@ -43,10 +43,11 @@ impl Manual<'_> {
         format!("{documents}{bus}")
     }
 
-    /// Lists the times that the document states.
+    /// Lists the times that the document states, and what silence does.
     fn timing(&self) -> String {
-        let items = self.protocol.timing.iter().map(|timing| self.stated(timing));
-        let list = doc::list(items);
+        let times = self.protocol.timing.iter().map(|timing| self.stated(timing));
+        let silence = self.protocol.after_silence.iter().map(|silence| self.silent(silence));
+        let list = doc::list(times.chain(silence));
         if list.is_empty() { list } else { section(Comment::new(["# Timing".to_owned(), list]).lines()) }
     }
 
@@ -57,14 +58,24 @@ impl Manual<'_> {
         if list.is_empty() { list } else { section(Comment::new(["# Limits of the product".to_owned(), list]).lines()) }
     }
 
+    fn silent(&self, silence: &Silence) -> String {
+        let sentence = doc::sentence_of(&format!("After silence the output {}", silence.output.meaning()));
+        self.remarked(&silence.doc, &sentence)
+    }
+
     fn stated(&self, timing: &Timing) -> String {
         let least = timing.minimum.map(|minimum| format!(", at least {}", quantity(minimum)));
         let title = doc::title(&timing.doc, &timing.name);
         let role = timing.role.map(|role| format!(" (`{}`)", role.name()));
         let [least, role] = [least, role].map(Option::unwrap_or_default);
         let sentence = doc::sentence_of(&format!("{title}: {}{least}{role}", time(timing)));
-        let errata_at_items = Doc { errata: Vec::new(), ..timing.doc.clone() };
-        doc::paragraphs(self.protocol, &errata_at_items, &sentence, None).join(" ")
+        self.remarked(&timing.doc, &sentence)
+    }
+
+    /// Adds the note and the section of an item of a list to its sentence.
+    fn remarked(&self, doc: &Doc, sentence: &str) -> String {
+        let errata_at_items = Doc { errata: Vec::new(), ..doc.clone() };
+        doc::paragraphs(self.protocol, &errata_at_items, sentence, None).join(" ")
     }
 }
 

@@ -32,10 +32,11 @@ pub mod variant;
 pub mod way;
 pub mod word;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
+use quote::format_ident;
 
 use crate::emit::Options;
-use crate::model::{LongMessageId, MessageId, Protocol, SelectorPlace, Table};
+use crate::model::{AfterSilence, LongMessageId, MessageId, Protocol, SelectorPlace, Table};
 use about::About;
 use address::{AddressType, Mode, Targets};
 use carrier::Carrier;
@@ -82,6 +83,8 @@ pub struct Plan {
     pub starting: Option<u64>,
     /// The times that have a role, if there are any.
     pub timing: Option<Timing>,
+    /// The variant of what devices do after silence, if the document says it.
+    pub after_silence: Option<Ident>,
     /// The parts of accesses that messages share.
     pub accesses: Vec<Access>,
     /// Device models.
@@ -147,6 +150,7 @@ impl Plan {
             modes: addressing,
             starting: protocol.error_codes().find_map(|code| code.starting),
             timing: Timing::new(protocol),
+            after_silence: after_silence(protocol),
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),
@@ -163,6 +167,12 @@ impl Plan {
             selectors,
         }
     }
+}
+
+/// Returns the variant of what devices do after silence, if the document says it.
+fn after_silence(protocol: &Protocol) -> Option<Ident> {
+    let output = protocol.after_silence.as_ref()?.output;
+    (output != AfterSilence::Unknown).then(|| format_ident!("{output:?}"))
 }
 
 /// Finds the field that says whether more frames follow, if there are sets or messages in parts.

@@ -131,6 +131,7 @@ fn implementation<'a>(plan: &Plan, derives: Derives, functions: impl Iterator<It
             const TIMING: Timing = TIMING;
         )
     });
+    let after_silence = plan.after_silence.iter();
     let starting = plan.starting.iter().map(|code| literal::decimal(*code));
     let truths = truths(plan, derives);
     let (way, node) = (way(&plan.ways), node(&plan.ways));
@@ -144,6 +145,7 @@ fn implementation<'a>(plan: &Plan, derives: Derives, functions: impl Iterator<It
             const MODES: &'static [Mode] = &[#(#modes),*];
             #(const STARTING: Option<u64> = Some(#starting);)*
             #timing
+            #(const AFTER_SILENCE: AfterSilence = AfterSilence::#after_silence;)*
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
             #(const #truths: bool = true;)*
 

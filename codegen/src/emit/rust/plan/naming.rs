@@ -10,12 +10,13 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 103] = [
+const TAKEN: [&str; 104] = [
     "Access",
     "Address",
     "AddressType",
     "Addressed",
     "Addressing",
+    "AfterSilence",
     "AnySignal",
     "AnySignals",
     "Bcd",
