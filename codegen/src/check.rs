@@ -12,6 +12,7 @@ mod no_example;
 mod no_limit;
 mod no_match;
 mod no_model;
+mod no_quantity;
 mod no_refusal;
 mod no_unit;
 mod nobody_replies;
@@ -48,7 +49,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 35] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 36] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -72,6 +73,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 35] = [
     (&starting::STARTING, Some(starting::check)),
     (&role::ROLE, Some(role::check)),
     (&rules::QUANTITY_PATH, Some(quantity_path::check)),
+    (&no_quantity::NO_QUANTITY, Some(no_quantity::check)),
     (&rules::PRODUCT_LIMIT, Some(product_limit::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),

@@ -1,15 +1,12 @@
 #![doc = include_str!("../rules/no_limit.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Kind, Message, Protocol, Signal, SignalId};
+use crate::model::{Kind, Message, Protocol, Signal, SignalId, Unit};
 use crate::rule::rules;
 
 rules! {
     NO_LIMIT "no_limit" Check WARNING;
 }
-
-/// Units of what can do harm if a device is told to give too much of it.
-const HARMFUL: [&str; 3] = ["V", "A", "W"];
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -26,7 +23,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Tests whether nothing limits what can do harm.
 fn is_unlimited(signal: &Signal) -> bool {
-    signal.unit.is_some_and(|unit| HARMFUL.contains(&&*unit.symbol)) && signal.limits().next().is_none()
+    signal.unit.is_some_and(Unit::can_harm) && signal.limits().next().is_none()
 }
 
 /// Tests whether a request carries a signal, alone or in the parts of a long message.

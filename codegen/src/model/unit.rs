@@ -51,6 +51,11 @@ impl Unit {
         Some(Self { symbol: Symbol::new(symbol)?, suffix: Symbol::new(suffix)? })
     }
 
+    /// Tests whether it can do harm if a device is told to give too much of it.
+    pub(crate) fn can_harm(self) -> bool {
+        ["V", "A", "W"].contains(&&*self.symbol)
+    }
+
     /// Finds a unit of the language by its symbol.
     pub fn find(symbol: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| *unit.symbol == *symbol)
