@@ -32,6 +32,8 @@ mod device;
 mod faults;
 mod keeper;
 mod node;
+mod others;
+mod outage;
 mod random;
 mod tally;
 #[cfg(test)]
@@ -42,16 +44,18 @@ pub use complaint::Complaint;
 pub use device::{Answer, Device};
 pub use faults::Faults;
 pub use keeper::{Keeper, Tell};
+pub use outage::{Driver, Outage};
 pub use random::Random;
 pub use tally::Tally;
 
 use core::marker::PhantomData;
 
-use crate::clock::has_come;
 use crate::{Addressed, Frame, Received};
 use complaint::Complaints;
 use node::{Node, has_coordinator};
-use wire::Wire;
+use others::Others;
+use tally::count;
+use wire::{Sender, UnderWay, Wire};
 
 /// What the devices of a bus expect, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,14 +73,19 @@ pub struct Rules {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// A frame for the client.
-    Frame(Frame),
+    Frame {
+        /// The frame.
+        frame: Frame,
+        /// When the client's driver received it. It waits there while the program does something else.
+        at: u32,
+    },
     /// The client or a device does something wrong.
     Complaint(Complaint),
 }
 
-/// A bus with `N` devices, and with room for `W` frames under way to the client.
+/// A bus with `N` devices, and with room for `W` frames under way.
 ///
-/// It takes at most 616 bytes, 128 for each device beside what that takes itself, and 24 for each frame.
+/// It takes at most 616 bytes, 208 for each device beside what that takes itself, and 24 for each frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Bench<P, D, const N: usize, const W: usize> {
     nodes: [Node<D>; N],
@@ -85,14 +94,18 @@ pub struct Bench<P, D, const N: usize, const W: usize> {
     wire: Wire<W>,
     /// When the client sent last.
     sent: Option<u32>,
-    /// Another controller: its frame, the time between two of them, and when the next one is due.
-    other: Option<(Frame, u32, u32)>,
+    others: Others,
+    outage: Option<Outage>,
+    /// What happened to no single device.
+    tally: Tally,
     complaints: Complaints,
     protocol: PhantomData<P>,
 }
 
 impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, W> {
     /// Returns a bus with devices, each with its number. They have just heard something at time 0.
+    ///
+    /// Two devices with one number both answer, the first one first. [`devices`](Self::devices) reaches both.
     pub fn new(devices: [(u8, D); N], rules: Rules, seed: u64) -> Self {
         Self {
             nodes: devices.map(|(number, device)| Node::new(number, device)),
@@ -100,46 +113,66 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             random: Random::new(seed),
             wire: Wire::EMPTY,
             sent: None,
-            other: None,
+            others: Others::NONE,
+            outage: None,
+            tally: Tally::NONE,
             complaints: Complaints::NONE,
             protocol: PhantomData,
         }
     }
 
-    /// Returns a device.
+    /// Returns all devices, each with its number and its faults.
+    pub fn devices(&mut self) -> impl Iterator<Item = (u8, &mut D, &mut Faults)> {
+        self.nodes.iter_mut().map(|node| (node.number, &mut node.device, &mut node.faults))
+    }
+
+    /// Returns a device, the first one of its number.
     pub fn device(&mut self, node: u8) -> Option<&mut D> {
         self.node(node).map(|node| &mut node.device)
     }
 
-    /// Returns the faults of a device.
+    /// Returns the faults of a device, the first one of its number.
     pub fn faults(&mut self, node: u8) -> Option<&mut Faults> {
         self.node(node).map(|node| &mut node.faults)
     }
 
     /// Returns how often faults happened.
     pub fn tally(&self) -> Tally {
-        let mut sum = Tally::NONE;
+        let mut sum = self.tally;
         self.nodes.iter().for_each(|node| sum += node.tally);
         sum
     }
 
-    /// Tests whether a device is on, and has started.
+    /// Tests whether a device of this number is on, and has started.
     pub fn is_up(&self, node: u8) -> bool {
         self.nodes.iter().any(|known| known.number == node && known.is_up())
     }
 
-    /// Lets a device start anew, also one that has died.
+    /// Lets the devices of a number start anew, also those that have died.
     pub fn restart(&mut self, node: u8, now: u32) {
         let boot = self.rules.boot;
-        if let Some(node) = self.node(node) {
-            node.restart(boot, now);
-        }
+        self.nodes.iter_mut().filter(|known| known.number == node).for_each(|node| node.restart(boot, now));
     }
 
     /// Adds another controller, which sends a frame from a time on, with `every` milliseconds between two
     /// of them. The devices answer it, and the client hears it all.
-    pub fn another_controller(&mut self, frame: Frame, every: u32, from: u32) {
-        self.other = Some((frame, every.max(1), from));
+    ///
+    /// # Errors
+    ///
+    /// Gives the frame back if there are four already.
+    pub fn another_controller(&mut self, frame: Frame, every: u32, from: u32) -> Result<(), Frame> {
+        self.others.add(frame, every, from)
+    }
+
+    /// Takes all other controllers away.
+    pub fn no_other_controllers(&mut self) {
+        self.others = Others::NONE;
+    }
+
+    /// Lets the bus go away for a time, in place of any other one. The bench does not complain that the client feeds
+    /// nobody then.
+    pub fn cut(&mut self, outage: Outage) {
+        self.outage = Some(outage);
     }
 
     /// Takes a frame of the client.
@@ -149,44 +182,89 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             self.complaints.add(Complaint::Gap { frame: *frame, after });
         }
         self.sent = Some(now);
-        match Received::decode(frame) {
+        match Received::<P>::decode(frame) {
             Err(problem) => self.complaints.add(Complaint::Unrecognised { frame: *frame, problem }),
             Ok(received) if !received.is_to_module() => self.complaints.add(Complaint::Direction(*frame)),
             Ok(received) => {
                 if let Err(error) = received.encode() {
                     self.complaints.add(Complaint::Illegal { frame: *frame, error });
                 }
-                self.deliver(&received, now);
+                self.put(frame, &received, now);
+            }
+        }
+    }
+
+    /// Puts a request of the client on the bus, if that is there.
+    fn put(&mut self, frame: &Frame, request: &Received<P>, now: u32) {
+        match self.outage.filter(|outage| outage.covers(now)) {
+            // It does not overtake what waits.
+            None if self.wire.has(Sender::Client) => {
+                self.wire.send(now, Sender::Client, *frame);
+            }
+            None => self.deliver(request, now),
+            Some(Outage { driver: Driver::Drops, .. }) => count(&mut self.tally.blocked, true),
+            Some(Outage { driver: Driver::Buffers, until, .. }) => {
+                count(&mut self.tally.delayed, true);
+                self.wire.send(until, Sender::Client, *frame);
             }
         }
     }
 
     /// Lets time pass, and returns what comes next. Call it until nothing comes.
     pub fn poll(&mut self, now: u32) -> Option<Event> {
-        for place in 0..N {
-            let Some(node) = self.nodes.get_mut(place) else { continue };
-            if node.tick(&self.rules, now) {
+        self.hear_others(now);
+        self.tick(now);
+        if let Some(complaint) = self.complaints.take() {
+            return Some(Event::Complaint(complaint));
+        }
+        while let Some(UnderWay { at, from, frame }) = self.wire.arrived(now) {
+            let is_lost = self.outage.is_some_and(|outage| outage.covers(at));
+            count(&mut self.tally.blocked, is_lost);
+            match from {
+                _ if is_lost => {}
+                Sender::Client => self.deliver_frame(&frame, at),
+                Sender::Device(_) | Sender::Other => return Some(Event::Frame { frame, at }),
+            }
+        }
+        self.outage = self.outage.filter(|outage| !outage.is_over(now));
+        None
+    }
+
+    /// Lets other controllers send what is due.
+    fn hear_others(&mut self, now: u32) {
+        while let Some((frame, due)) = self.others.due(now) {
+            count(&mut self.tally.others, true);
+            self.wire.send(due, Sender::Other, frame);
+            if !self.outage.is_some_and(|outage| outage.covers(due)) {
+                self.deliver_frame(&frame, due);
+            }
+        }
+    }
+
+    /// Lets devices do what they do by themselves.
+    fn tick(&mut self, now: u32) {
+        let is_cut = self.outage.is_some_and(|outage| outage.has_begun(now));
+        for node in &mut self.nodes {
+            if node.tick(&self.rules, is_cut, now) {
                 self.complaints.add(Complaint::Unfed { node: node.number });
             }
             while let Some(report) = node.report(now) {
                 node.carry(report, &mut self.random, &mut self.wire, now);
             }
         }
-        if let Some((frame, every, due)) = self.other.filter(|(_, _, due)| has_come(*due, now)) {
-            self.other = Some((frame, every, due.wrapping_add(every)));
-            self.wire.send(now, None, frame);
-            if let Ok(received) = Received::decode(&frame) {
-                self.deliver(&received, now);
-            }
+    }
+
+    /// Lets the devices hear a frame, if it is a request.
+    fn deliver_frame(&mut self, frame: &Frame, now: u32) {
+        if let Ok(request) = Received::decode(frame) {
+            self.deliver(&request, now);
         }
-        let complaint = self.complaints.take().map(Event::Complaint);
-        complaint.or_else(|| self.wire.arrived(now).map(Event::Frame))
     }
 
     /// Lets the devices that a request addresses hear and answer it.
     fn deliver(&mut self, request: &Received<P>, now: u32) {
-        let Self { nodes, random, wire, complaints, .. } = self;
-        let mut speaks = true;
+        let Self { nodes, random, wire, complaints, tally, .. } = self;
+        let (mut speaks, mut has_answered) = (true, false);
         let asked = request.node();
         for node in nodes.iter_mut().filter(|node| node.is_asked(request, asked)) {
             let reply = node.answer(request, random, now).unwrap_or_else(|error| {
@@ -195,6 +273,8 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             });
             let Some(reply) = reply.filter(|_| speaks) else { continue };
             speaks = !has_coordinator(request);
+            count(&mut tally.doubles, has_answered && asked.is_some());
+            has_answered = true;
             node.spoil(request, reply, random, wire, now);
         }
     }

@@ -36,8 +36,12 @@ pub trait Device<P: Protocol> {
     /// Lets time pass.
     fn tick(&mut self, _now: u32) {}
 
-    /// Acts by itself, since its watchdog has run out.
+    /// Acts by itself, since its watchdog has run out. The document may say [what it
+    /// does](crate::Protocol::AFTER_SILENCE).
     fn silence(&mut self, _now: u32) {}
+
+    /// Hears a request again after its watchdog has run out. It answers the request after that.
+    fn wake(&mut self, _now: u32) {}
 
     /// Starts anew, without what it was told.
     fn power_on(&mut self, _now: u32) {}

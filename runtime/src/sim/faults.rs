@@ -17,8 +17,12 @@ pub struct Faults {
     pub disguised: u8,
     /// Requests that it refuses, with `code`.
     pub refused: u8,
-    /// The error code of such a refusal.
+    /// The error code of a refusal.
     pub code: u64,
+    /// The message whose requests it always refuses, with `code`. They count as refused.
+    pub always_refused: Option<&'static str>,
+    /// The message whose replies always have a byte less than they should have. They count as broken.
+    pub always_short: Option<&'static str>,
     /// Replies whose values [drift](super::Device::drift).
     pub drifted: u8,
     /// The longest time in milliseconds until a reply comes. The shortest is 1. No reply comes before an earlier frame
@@ -42,6 +46,8 @@ impl Faults {
         disguised: 0,
         refused: 0,
         code: 0,
+        always_refused: None,
+        always_short: None,
         drifted: 0,
         slowest: 1,
         is_mute_at_start: false,

@@ -4,7 +4,7 @@
 mod tests;
 
 use super::{Answer, Device};
-use crate::{Addressed, OutOfRange, Quantities, Quantity, Received};
+use crate::{Addressed, AfterSilence, OutOfRange, Quantities, Quantity, Received};
 
 /// Builds what a device says to a request that sets no quantity, or that it does not obey.
 pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
@@ -13,8 +13,11 @@ pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
 /// function builds its other answers from what it keeps.
 ///
 /// When it starts anew, it forgets all but what the document says it keeps without power. It does with a value out of
-/// range what the document says, and then the function answers. It switches [`DELIVERING`](Quantity::DELIVERING) off
-/// when its watchdog runs out.
+/// range what the document says, and then the function answers.
+///
+/// When its watchdog runs out, it does with [`DELIVERING`](Quantity::DELIVERING) what the document says of
+/// [silence](crate::Protocol::AFTER_SILENCE). It goes off if the document says nothing, and delivers with the values that it was
+/// told last if it starts by itself.
 ///
 /// Each quantity takes 24 bytes on a processor of 64 bits, and 12 on one of 32 bits.
 #[derive(Clone, Copy, Debug)]
@@ -22,18 +25,27 @@ pub struct Keeper<P: Addressed, const Q: usize> {
     tell: Tell<P, Q>,
     group: Option<P::Target>,
     kept: [Option<(Quantity, i32)>; Q],
+    after_silence: AfterSilence,
+    /// Whether it delivered when its watchdog ran out, and has heard nothing since.
+    resumes: bool,
 }
 
 impl<P: Addressed, const Q: usize> Keeper<P, Q> {
     /// Returns a device that keeps nothing yet. Any request to several devices is also for it.
     pub const fn new(tell: Tell<P, Q>) -> Self {
-        Self { tell, group: None, kept: [None; Q] }
+        Self { tell, group: None, kept: [None; Q], after_silence: P::AFTER_SILENCE, resumes: false }
     }
 
     /// Returns the device in a group. Of requests to several devices, those to this target are for it.
     #[must_use]
     pub fn in_group(self, group: P::Target) -> Self {
         Self { group: Some(group), ..self }
+    }
+
+    /// Sets what it does when its watchdog runs out, where the document does not say it.
+    #[must_use]
+    pub const fn after_silence(self, after_silence: AfterSilence) -> Self {
+        Self { after_silence, ..self }
     }
 
     /// Returns the value of a quantity, if it keeps one.
@@ -75,13 +87,29 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const Q: usize> Device<P> for
     }
 
     fn silence(&mut self, _now: u32) {
-        self.keep(Quantity::DELIVERING, 0);
+        let delivers = self.value(Quantity::DELIVERING) == Some(1);
+        match self.after_silence {
+            AfterSilence::Unknown | AfterSilence::Off => self.keep(Quantity::DELIVERING, 0),
+            AfterSilence::Resumes => {
+                self.resumes = delivers;
+                self.keep(Quantity::DELIVERING, 0);
+            }
+            AfterSilence::Starts => self.keep(Quantity::DELIVERING, 1),
+            AfterSilence::Keeps => {}
+        }
+    }
+
+    fn wake(&mut self, _now: u32) {
+        if core::mem::take(&mut self.resumes) {
+            self.keep(Quantity::DELIVERING, 1);
+        }
     }
 
     fn power_on(&mut self, _now: u32) {
         let is_kept = |(quantity, _): &(Quantity, i32)| {
             P::SETS.iter().any(|path| path.quantity == *quantity && path.is_kept == Some(true))
         };
+        self.resumes = false;
         self.kept = self.kept.map(|slot| slot.filter(is_kept));
     }
 }

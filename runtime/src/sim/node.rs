@@ -1,6 +1,8 @@
 //! A device on the bus.
 
-use super::{Answer, Device, Faults, Random, Rules, Tally, Wire};
+use super::tally::count;
+use super::wire::{Sender, Wire};
+use super::{Answer, Device, Faults, Random, Rules, Tally};
 use crate::clock::has_come;
 use crate::plumbing::Who;
 use crate::{Addressed, Destination, Error, Frame, Protocol, Received};
@@ -20,12 +22,17 @@ pub struct Node<D> {
     boots: Option<u32>,
     /// Whether its watchdog has run out since.
     is_alone: bool,
+    /// Since when the client could have fed it.
+    fed: u32,
+    /// Whether it has gone unfed since.
+    is_unfed: bool,
 }
 
 impl<D> Node<D> {
     pub const fn new(number: u8, device: D) -> Self {
         let (faults, tally) = (Faults::NONE, Tally::NONE);
-        Self { number, device, faults, tally, is_dead: false, heard: 0, boots: None, is_alone: false }
+        let (is_dead, is_alone, is_unfed) = (false, false, false);
+        Self { number, device, faults, tally, is_dead, heard: 0, boots: None, is_alone, fed: 0, is_unfed }
     }
 
     /// Tests whether it is on, and has started.
@@ -50,11 +57,18 @@ impl<D> Node<D> {
         count(&mut self.tally.restarts, true);
         self.faults.dies = self.faults.dies.filter(|time| !has_come(*time, now));
         self.is_dead = false;
-        (self.boots, self.heard, self.is_alone) = (Some(now.wrapping_add(boot)), now, false);
+        self.boots = Some(now.wrapping_add(boot));
+        self.hear(now);
     }
 
-    /// Lets time pass, and tells whether the watchdog has just run out.
-    pub fn tick<P: Protocol>(&mut self, rules: &Rules, now: u32) -> bool
+    /// Begins to wait for the next request.
+    const fn hear(&mut self, now: u32) {
+        (self.heard, self.is_alone) = (now, false);
+        (self.fed, self.is_unfed) = (now, false);
+    }
+
+    /// Lets time pass, and tells whether the client has just left it unfed for too long. The bus may be `cut`.
+    pub fn tick<P: Protocol>(&mut self, rules: &Rules, cut: bool, now: u32) -> bool
     where
         D: Device<P>,
     {
@@ -66,16 +80,21 @@ impl<D> Node<D> {
             self.restart(rules.boot, now);
         }
         if self.boots.is_some_and(|time| has_come(time, now)) {
-            (self.boots, self.heard) = (None, now);
+            self.boots = None;
+            self.hear(now);
         }
         self.device.tick(now);
-        let silence = now.wrapping_sub(self.heard);
-        let is_out = !self.is_alone && self.is_up() && rules.watchdog.is_some_and(|longest| silence > longest);
-        if is_out {
+        if cut {
+            self.fed = now;
+        }
+        let has_waited = |since| rules.watchdog.is_some_and(|longest| now.wrapping_sub(since) > longest);
+        if self.is_up() && !self.is_alone && has_waited(self.heard) {
             self.is_alone = true;
             self.device.silence(now);
         }
-        is_out
+        let is_unfed = self.is_up() && !self.is_unfed && has_waited(self.fed);
+        self.is_unfed |= is_unfed;
+        is_unfed
     }
 
     /// Returns what it sends by itself.
@@ -110,10 +129,14 @@ impl<D> Node<D> {
         if self.is_dead_at(now) || happens(random, self.faults.deaf, &mut self.tally.lost) {
             return Ok(None);
         }
-        (self.heard, self.is_alone) = (now, false);
+        if self.is_alone {
+            count(&mut self.tally.wakes, true);
+            self.device.wake(now);
+        }
+        self.hear(now);
         let answer = if self.boots.is_some() {
             if self.faults.is_mute_at_start { Answer::Silence } else { Answer::Starting }
-        } else if happens(random, self.faults.refused, &mut self.tally.refused) {
+        } else if self.refuses(request, random) {
             Answer::Refusal(self.faults.code)
         } else {
             self.device.answer(request, now)
@@ -136,6 +159,12 @@ impl<D> Node<D> {
         }
     }
 
+    /// Draws whether it refuses a request.
+    fn refuses<P: Protocol>(&mut self, request: &Received<P>, random: &mut Random) -> bool {
+        let percent = if is_of(request, self.faults.always_refused) { 100 } else { self.faults.refused };
+        happens(random, percent, &mut self.tally.refused)
+    }
+
     /// Puts the faults of frames into a reply, and sends it.
     pub fn spoil<P: Addressed, const W: usize>(
         &mut self,
@@ -147,18 +176,27 @@ impl<D> Node<D> {
     ) {
         let is_disguised = happens(random, self.faults.disguised, &mut self.tally.disguised);
         let reply = if is_disguised { self.disguise(request, reply, random) } else { reply };
-        self.carry(reply, random, wire, now);
+        if is_of(request, self.faults.always_short) {
+            count(&mut self.tally.broken, true);
+            self.deliver(shorter(reply), random, wire, now);
+        } else {
+            self.carry(reply, random, wire, now);
+        }
     }
 
     /// Puts the other faults of frames into one, and sends it as often as it comes.
     pub fn carry<const W: usize>(&mut self, reply: Frame, random: &mut Random, wire: &mut Wire<W>, now: u32) {
-        let Faults { lost, twice, broken, slowest, .. } = self.faults;
-        let is_broken = happens(random, broken, &mut self.tally.broken);
-        let reply = if is_broken { cut(reply, random) } else { reply };
+        let is_broken = happens(random, self.faults.broken, &mut self.tally.broken);
+        self.deliver(if is_broken { cut(reply, random) } else { reply }, random, wire, now);
+    }
+
+    /// Sends a frame as often as it comes.
+    fn deliver<const W: usize>(&mut self, reply: Frame, random: &mut Random, wire: &mut Wire<W>, now: u32) {
+        let Faults { lost, twice, slowest, .. } = self.faults;
         for _ in 0..=u8::from(happens(random, twice, &mut self.tally.twice)) {
             let delay = random.below(slowest.max(1)).saturating_add(1);
             if !happens(random, lost, &mut self.tally.lost) {
-                let at = wire.send(now.wrapping_add(delay), Some(self.number), reply);
+                let at = wire.send(now.wrapping_add(delay), Sender::Device(self.number), reply);
                 self.tally.delay = self.tally.delay.wrapping_add(at.wrapping_sub(now).into());
             }
         }
@@ -177,9 +215,9 @@ impl<D> Node<D> {
     }
 }
 
-/// Counts something that happens.
-fn count(counter: &mut u64, happens: bool) {
-    *counter = counter.wrapping_add(happens.into());
+/// Tests whether a request is of the message with a name.
+fn is_of<P: Protocol>(request: &Received<P>, message: Option<&str>) -> bool {
+    message == Some(request.exchange().message())
 }
 
 /// Draws whether something happens, and counts it.
@@ -192,8 +230,12 @@ fn happens(random: &mut Random, percent: u8, counter: &mut u64) -> bool {
 /// Takes a byte away or adds one.
 fn cut(frame: Frame, random: &mut Random) -> Frame {
     let length = frame.byte_count();
-    let other = if length == 8 || random.chance(50) { length.saturating_sub(1) } else { length.saturating_add(1) };
-    frame.with(frame.bytes(), other)
+    if length == 8 || random.chance(50) { shorter(frame) } else { frame.with(frame.bytes(), length.saturating_add(1)) }
+}
+
+/// Takes a byte away.
+fn shorter(frame: Frame) -> Frame {
+    frame.with(frame.bytes(), frame.byte_count().saturating_sub(1))
 }
 
 /// Returns the mode of a request, and who answers.

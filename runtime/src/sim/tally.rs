@@ -23,20 +23,56 @@ pub struct Tally {
     pub restarts: u64,
     /// How many devices died.
     pub deaths: u64,
+    /// Devices that heard a request again after their watchdog had run out.
+    pub wakes: u64,
+    /// Replies to a request to one module, beside that of another device with its number.
+    pub doubles: u64,
+    /// Frames of other controllers.
+    pub others: u64,
+    /// Frames that got lost because the bus was away.
+    pub blocked: u64,
+    /// Frames of the client that came late, when the bus was back.
+    pub delayed: u64,
 }
 
 impl Tally {
     /// Nothing has happened.
-    pub const NONE: Self =
-        Self { lost: 0, twice: 0, broken: 0, disguised: 0, refused: 0, drifted: 0, delay: 0, restarts: 0, deaths: 0 };
+    pub const NONE: Self = Self {
+        lost: 0,
+        twice: 0,
+        broken: 0,
+        disguised: 0,
+        refused: 0,
+        drifted: 0,
+        delay: 0,
+        restarts: 0,
+        deaths: 0,
+        wakes: 0,
+        doubles: 0,
+        others: 0,
+        blocked: 0,
+        delayed: 0,
+    };
+
+    /// Returns every count.
+    fn counts(&mut self) -> [&mut u64; 14] {
+        let Self { lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths, .. } = self;
+        let Self { wakes, doubles, others, blocked, delayed, .. } = self;
+        [
+            lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths, wakes, doubles, others, blocked,
+            delayed,
+        ]
+    }
 }
 
 impl AddAssign for Tally {
-    fn add_assign(&mut self, other: Self) {
-        let Self { lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths } = self;
-        let own = [lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths];
-        let Self { lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths } = other;
-        let others = [lost, twice, broken, disguised, refused, drifted, delay, restarts, deaths];
-        own.into_iter().zip(others).for_each(|(own, other)| *own = own.wrapping_add(other));
+    fn add_assign(&mut self, mut other: Self) {
+        let others = other.counts();
+        self.counts().into_iter().zip(others).for_each(|(own, other)| *own = own.wrapping_add(*other));
     }
+}
+
+/// Counts something that happens.
+pub fn count(counter: &mut u64, happens: bool) {
+    *counter = counter.wrapping_add(happens.into());
 }

@@ -4,8 +4,8 @@ use crate::plumbing::{
     Address, Decode, Headed, Heading, IdFilter, Incoming, Particulars, Pattern, Shown, Task, Way, Who,
 };
 use crate::{
-    Access, AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields,
-    Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
+    Access, AddressType, Addressed, AfterSilence, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame,
+    IdentifierFields, Layout, Mode, Payload, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
 };
 
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -198,6 +198,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(ERROR, 0);
     const STARTING: Option<u64> = Some(7);
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Resumes;
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];

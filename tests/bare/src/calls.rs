@@ -7,7 +7,7 @@ use canspec_runtime::assembler::{Assembler, Partial};
 use canspec_runtime::client::{self, Client, Heard, Pace, Step};
 use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
-use canspec_runtime::sim::{Answer, Bench, Device, Faults, Random, Rules};
+use canspec_runtime::sim::{Answer, Bench, Device, Driver, Faults, Outage, Random, Rules};
 use canspec_runtime::transfers::{self, Filled, Grouped, Transferred, Transport};
 use canspec_runtime::{
     Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Quantities,
@@ -173,7 +173,8 @@ impl<P: Addressed + Unknown> Device<P> for Any {
 fn bench<P: Addressed + Unknown>() {
     let rules = Rules { gap: unknown(), watchdog: Some(unknown()), boot: unknown() };
     let mut bench = Bench::<P, Any, 2, 3>::new([(unknown(), Any), (unknown(), Any)], rules, unknown());
-    bench.another_controller(unknown_frame(), unknown(), unknown());
+    sink(bench.another_controller(unknown_frame(), unknown(), unknown()));
+    bench.cut(Outage { from: unknown(), until: unknown(), driver: if unknown() { Driver::Drops } else { Driver::Buffers } });
     for _ in 0..unknown::<u8>() {
         if let Some(faults) = bench.faults(unknown()) {
             *faults = Faults::random(&mut Random::new(unknown()), unknown(), unknown());

@@ -36,7 +36,7 @@ fn a_winch_runs_again_after_it_started_anew() {
     for now in 0..6000 {
         while let Some(event) = bench.poll(now) {
             match event {
-                Event::Frame(frame) => drop(client.handle(&frame, now)),
+                Event::Frame { frame, at } => drop(client.handle(&frame, at)),
                 Event::Complaint(complaint) => panic!("{complaint}"),
             }
         }

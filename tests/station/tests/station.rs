@@ -149,7 +149,7 @@ fn the_station_gives_way_to_another_controller_and_still_stops() {
     assert!(!bus.station.has_rival());
     let route = canspec_runtime::Route::new(infy::Target::Module(0), 0xF1);
     let request = infy::SetModuleOutput { voltage_v: 300.0, current_a: 2.0 }.set(route).expect("it is legal");
-    bus.bench.another_controller(*request.frame(), 1000, 12_100);
+    bus.bench.another_controller(*request.frame(), 1000, 12_100).expect("room");
     bus.run(20_000);
     assert!(bus.station.has_rival());
     let settings = |bus: &Bus<infy::Message, 8, 2>, from: u32| {

@@ -199,8 +199,8 @@ fn poll(seed: u64) {
     let mut known = BTreeMap::<i32, Known>::new();
     for now in 0..30_000 {
         while let Some(event) = bench.poll(now) {
-            let Event::Frame(frame) = event else { panic!("seed {seed}: {event:?}") };
-            match client.handle(&frame, now) {
+            let Event::Frame { frame, at } = event else { panic!("seed {seed}: {event:?}") };
+            match client.handle(&frame, at) {
                 Heard::Answer { received, .. } | Heard::Twice { received, .. } | Heard::Late { received, .. } => {
                     known.entry(received.node().expect("a battery")).or_default().hear(&received);
                 }

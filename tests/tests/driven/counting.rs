@@ -163,7 +163,7 @@ fn count(seed: u64) {
             }
         }
         while let Some(event) = bench.poll(now) {
-            let Event::Frame(frame) = event else { panic!("seed {seed}: {event:?}") };
+            let Event::Frame { frame, .. } = event else { panic!("seed {seed}: {event:?}") };
             counter.handle(&frame, now);
         }
         while let Some(frame) = counter.poll(now) {

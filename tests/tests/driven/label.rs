@@ -63,8 +63,8 @@ fn labels_are_read_in_parts_although_frames_get_lost() {
     let mut torn = 0;
     for now in 0..60_000 {
         while let Some(event) = bench.poll(now) {
-            let Event::Frame(frame) = event else { panic!("{event:?}") };
-            let _ = client.handle(&frame, now);
+            let Event::Frame { frame, at } = event else { panic!("{event:?}") };
+            let _ = client.handle(&frame, at);
             for outcome in assembler.receive(&frame, now) {
                 let Outcome::Whole(whole) = outcome else { continue };
                 let node = whole.identifier().address;

@@ -85,6 +85,10 @@ impl<P: Quantities + Addressed<Target: PartialEq>> Device<P> for Module<P> {
         self.kept.silence(now);
     }
 
+    fn wake(&mut self, now: u32) {
+        self.kept.wake(now);
+    }
+
     fn power_on(&mut self, now: u32) {
         self.started = now;
         self.kept.power_on(now);
@@ -211,7 +215,7 @@ fn drive<P: Quantities + Addressed<Target: PartialEq>>(facts: &Facts<P>, seed: u
     for now in 0..END {
         while let Some(event) = bench.poll(now) {
             match event {
-                Event::Frame(frame) => match driver.client.handle(&frame, now) {
+                Event::Frame { frame, at } => match driver.client.handle(&frame, at) {
                     Heard::Answer { received, .. } | Heard::Late { received, .. } | Heard::Other(received) => {
                         driver.hear(&received, now);
                     }

@@ -108,7 +108,7 @@ impl Trial {
         }
         if random.chance(50) {
             let other = Heat::ask(Route::new(To::Heater(3), 0xF1)).expect("a legal request");
-            bench.another_controller(*other.frame(), 70, 0);
+            bench.another_controller(*other.frame(), 70, 0).expect("room");
         }
         let (silent, doubtful, outcome) = (Nodes::NONE, Nodes::NONE, Outcome::default());
         Self { pace, random, bench, client, asked: vec![], wishes: vec![], silent, doubtful, outcome }
@@ -119,7 +119,7 @@ impl Trial {
         self.wish(now);
         while let Some(event) = self.bench.poll(now) {
             match event {
-                Event::Frame(frame) => self.hear(&frame, now),
+                Event::Frame { frame, .. } => self.hear(&frame, now),
                 Event::Complaint(complaint) => self.complain(now, &complaint),
             }
         }

@@ -1,7 +1,7 @@
 use super::Keeper;
 use crate::sim::{Answer, Device};
 use crate::tests::heaters::{Message, frame};
-use crate::{Quantity, Received};
+use crate::{AfterSilence, Quantity, Received};
 
 /// A heater that limits its power to 2000 W, and keeps it without power.
 type Heater = Keeper<Message, 1>;
@@ -34,4 +34,45 @@ fn what_a_device_keeps_without_power_is_there_when_it_starts_anew() {
     other.keep(Quantity::GROUP, 3);
     other.power_on(0);
     assert_eq!(other.value(Quantity::GROUP), None, "nothing says that it is kept");
+}
+
+#[test]
+fn a_device_does_after_silence_what_the_document_says() {
+    use AfterSilence::{Keeps, Off, Resumes, Starts, Unknown};
+    let states = |heater: Heater, delivers| {
+        let mut heater = heater;
+        heater.keep(Quantity::DELIVERING, delivers);
+        heater.silence(0);
+        let alone = heater.value(Quantity::DELIVERING);
+        heater.wake(0);
+        [alone, heater.value(Quantity::DELIVERING)].map(|state| state == Some(1))
+    };
+    let heater = Heater::new(|_, _| Answer::Silence);
+    let both = |after_silence| [1, 0].map(|delivers| states(heater.after_silence(after_silence), delivers));
+    assert_eq!([Off, Unknown].map(both), [[[false, false]; 2]; 2]);
+    assert_eq!(both(Resumes), [[false, true], [false, false]]);
+    assert_eq!(both(Starts), [[true, true]; 2]);
+    assert_eq!(both(Keeps), [[true, true], [false, false]]);
+    assert_eq!(states(heater, 1), [false, true], "the document of the heaters says that they resume");
+}
+
+#[test]
+fn a_device_that_starts_anew_does_not_resume() {
+    let mut heater = Heater::new(|_, _| Answer::Silence);
+    heater.keep(Quantity::DELIVERING, 1);
+    heater.silence(0);
+    heater.power_on(0);
+    heater.wake(0);
+    assert_eq!(heater.value(Quantity::DELIVERING), None);
+}
+
+#[test]
+fn a_device_resumes_only_once() {
+    let mut heater = Heater::new(|_, _| Answer::Silence);
+    heater.keep(Quantity::DELIVERING, 1);
+    heater.silence(0);
+    heater.wake(0);
+    heater.keep(Quantity::DELIVERING, 0);
+    heater.wake(0);
+    assert_eq!(heater.value(Quantity::DELIVERING), Some(0));
 }

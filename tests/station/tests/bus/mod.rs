@@ -129,7 +129,7 @@ where
     pub fn turn(&mut self) -> Result<(), String> {
         while let Some(event) = self.bench.poll(self.now) {
             match event {
-                Event::Frame(frame) => {
+                Event::Frame { frame, .. } => {
                     self.heard += 1;
                     self.station.handle(&frame, self.now);
                 }

@@ -249,8 +249,8 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         let mut asked: HashMap<Ticket, Asked> = HashMap::new();
         for now in start..start + 20_000 {
             while let Some(event) = self.bus.bench.poll(now) {
-                let Event::Frame(frame) = event else { continue };
-                match client.handle(&frame, now) {
+                let Event::Frame { frame, at } = event else { continue };
+                match client.handle(&frame, at) {
                     Heard::Answer { ticket, received } => {
                         let said = received.setting(Quantity::OUTPUT_VOLTAGE);
                         let own = asked.get_mut(&ticket).ok_or("an answer to what was not asked")?;
