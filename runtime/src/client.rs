@@ -49,6 +49,7 @@
 //! in 24 days. If the clock goes back, no time counts as passed, and [`Step::ClockBack`] says so. A program that then
 //! sleeps until a time that it was told before sleeps too long. So sleep for the time that is left, and not until a time.
 
+mod bus;
 mod duty;
 mod entry;
 mod group;
@@ -60,6 +61,7 @@ mod pace;
 #[cfg(test)]
 mod tests;
 
+pub use bus::Bus;
 pub use duty::{Duty, Output};
 pub use entry::Ticket;
 pub use group::NoMembers;
@@ -71,6 +73,7 @@ use core::num::NonZeroU32;
 
 use crate::clock::{Steady, earlier, has_come};
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
+use bus::Sending;
 use entry::{Entry, State, Urgency};
 use group::Groups;
 use health::Health;
@@ -86,7 +89,7 @@ const NO_PERIOD: &str = "the period is 0 ms, which would fill the bus: it is at 
 /// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
 /// and again.
 ///
-/// A client takes 112 bytes. Each request takes 124 on a processor of 32 bits, and 136 on one of 64 bits.
+/// A client takes 152 bytes. Each request takes 124 on a processor of 32 bits, and 136 on one of 64 bits.
 /// Each group takes 120.
 #[derive(Clone, Copy, Debug)]
 pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
@@ -96,8 +99,13 @@ pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     groups: Groups<G>,
     health: Health,
     clock: Steady,
-    /// When the next frame may be sent, or could be. Long after that it is forgotten.
+    bus: Bus,
+    /// When the next frame may be sent, if it must wait.
     free: Option<u32>,
+    /// When the gap after the last frame ends. Long after that it is forgotten.
+    busy: Option<u32>,
+    /// What was sent last, until the next poll.
+    last: Option<Sending>,
     /// Number of the next ticket.
     next: u32,
 }
@@ -132,7 +140,7 @@ pub enum Step {
     Silent(u8),
     /// A silent module has sent something.
     Back(u8),
-    /// The clock has gone back by so many milliseconds. No time counts as passed, and the client goes on.
+    /// The clock has gone back by this number of milliseconds. No time counts as passed, and the client goes on.
     ClockBack(u32),
     /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
     Wait(Option<u32>),
@@ -238,7 +246,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns a client that has asked nothing yet.
     pub const fn new(pace: Pace) -> Self {
         let (entries, groups) = ([None; N], Groups([None; G]));
-        Self { pace, model: None, entries, groups, health: Health::NEW, clock: Steady::NEW, free: None, next: 0 }
+        let (health, clock, bus) = (Health::NEW, Steady::NEW, Bus::On);
+        let (free, busy, last) = (None, None, None);
+        Self { pace, model: None, entries, groups, health, clock, bus, free, busy, last, next: 0 }
     }
 
     /// Reads frames as those of a device model if messages look the same.
@@ -359,6 +369,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Says what to do next.
     pub fn poll(&mut self, now: u32) -> Step {
         let now = self.clock.pass(now);
+        self.last = None;
         if let Some(back) = self.clock.went_back() {
             return Step::ClockBack(back);
         }
@@ -368,7 +379,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Says what to do now, if there is anything.
     fn act(&mut self, now: u32) -> Option<Step> {
-        self.free = self.free.filter(|_| self.idle_from().is_some_and(|from| !has_come(from, now)));
+        self.free = self.free.filter(|free| !has_come(*free, now));
+        self.busy = self.busy.filter(|_| self.idle_from().is_some_and(|from| !has_come(from, now)));
         let ended = self.pass(now);
         if let Some(Step::Done(ticket)) = ended {
             self.lead(ticket);
@@ -379,7 +391,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Returns from when on nothing was sent for so long that nothing which was due then can still wait for answers.
     fn idle_from(&self) -> Option<u32> {
-        Some(self.free?.wrapping_add(self.pace.wait).wrapping_add(self.pace.late).wrapping_add(1))
+        Some(self.busy?.wrapping_add(self.pace.wait).wrapping_add(self.pace.late).wrapping_add(1))
     }
 
     /// Lets time pass. Begins rounds, and ends a request, and says how.
@@ -406,7 +418,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Says what a frame is that was received at a time. It answers nothing that was sent after that.
     ///
     /// An adapter that knows when a frame came gives that time. Otherwise the program gives the time at which it
-    /// reads the frame. A driver that hands back what it has sent must not pass it on: it would be a
+    /// reads the frame. When the clock goes back, only the next [`poll`](Self::poll) tells the client. What was received
+    /// since then counts as old until that. A driver that hands back what it has sent must not pass it on: it would be a
     /// [rival](Heard::Rival).
     pub fn handle(&mut self, frame: &impl embedded_can::Frame, received_at: u32) -> Heard<P> {
         let received_at = self.clock.steady(received_at);
@@ -500,7 +513,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Sends the request that is to be sent first, if the bus is free.
     fn send(&mut self, now: u32) -> Option<Step> {
-        if self.free.is_some_and(|free| !has_come(free, now)) {
+        if self.free.is_some() || self.bus == Bus::Off {
             return None;
         }
         let mut first: Option<(usize, &Entry<P>)> = None;
@@ -513,9 +526,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
         let (place, _) = first?;
         let entry = self.entries.get_mut(place)?.as_mut()?;
-        entry.start(now, self.groups.answering(&entry.request));
-        self.free = Some(now.wrapping_add(entry.pace.gap));
         let (ticket, frame) = (entry.ticket, *entry.request.frame());
+        self.last = Some(Sending { ticket, from: entry.until(), sent: entry.sent, busy: self.busy });
+        entry.start(now, self.groups.answering(&entry.request));
+        self.busy = Some(now.wrapping_add(entry.pace.gap));
+        self.free = self.busy.filter(|busy| !has_come(*busy, now));
         if entry.tries == 1 {
             self.hold_back(ticket);
         }
@@ -539,7 +554,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     fn deadline(&self, now: u32) -> Option<u32> {
         let free = self.free.unwrap_or(now);
         let next = |entry: &Entry<P>| match entry.state {
-            State::Due { .. } if entry.is_held_back() => None,
+            State::Due { .. } if entry.is_held_back() || self.bus == Bus::Off => None,
             State::Due { from } if earlier(from, free, now) => Some(free),
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
         };

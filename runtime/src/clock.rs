@@ -50,7 +50,7 @@ pub fn latest_of(one: Option<u32>, other: Option<u32>) -> Option<u32> {
 ///
 /// A computer sets its clock by another one, and a driver stamps frames by a third. When the program's clock goes back,
 /// no time counts as passed. After that, the steady clock is ahead of it. A jump forward counts as time that has
-/// passed, unless it is 2^31 ms or more: then it cannot be told from one that goes back.
+/// passed. One of 2^31 ms or more cannot be told from one that goes back.
 ///
 /// ```
 /// use canspec_runtime::clock::Steady;

@@ -174,9 +174,11 @@ impl<P: Protocol> Entry<P> {
         self.sent.is_some() && self.deaf().is_none() && !self.is_resting()
     }
 
-    /// Tests whether it had been sent in this round when a frame was received.
+    /// Tests whether a frame that was received then can answer what was sent in this round.
     pub fn was_sent_by(&self, received_at: u32) -> bool {
-        self.sent.is_some_and(|sent| has_come(sent.first, received_at))
+        // What waits to be sent again may have been passed by another request since no answer could come.
+        let is_open = |closes| !matches!(self.state, State::Due { .. }) || has_come(received_at, closes);
+        self.sent.is_some_and(|sent| has_come(sent.first, received_at) && is_open(sent.closes))
     }
 
     /// Returns how surely an answer is for it, the least number first, or `None` if the frame that was received then
@@ -229,15 +231,15 @@ impl<P: Protocol> Entry<P> {
             group.ask(self.ticket, self.tries == 0, now);
         }
         self.wait_for_leader();
-        self.urgency = Urgency::Usual;
         self.tries = self.tries.saturating_add(1);
         self.unheard = self.unheard.saturating_add(1);
         let is_answered = self.request.replies() != Replies::Nobody;
         let [wait, late] = if is_answered { [self.pace.wait, self.pace.late] } else { [0, 0] };
         let until = now.wrapping_add(wait);
         let closes = until.wrapping_add(late);
+        let open = self.sent.filter(|sent| !has_come(sent.closes, now));
         let again = |sent: Sent| Sent { closes: later_of(sent.closes, closes), ..sent };
-        self.sent = Some(self.sent.map_or(Sent { first: now, closes }, again));
+        self.sent = Some(open.map_or(Sent { first: now, closes }, again));
         self.state = State::Waiting { until: self.deaf().map_or(until, |deaf| later_of(until, deaf)) };
     }
 
@@ -250,7 +252,11 @@ impl<P: Protocol> Entry<P> {
         }
         let is_complete = group.is_some_and(|group| group.missing.is_empty()) && self.listens();
         let is_over = matches!(self.state, State::Waiting { until } if has_come(until, now));
-        if !(is_over || is_complete) || self.listen(now) {
+        if !(is_over || is_complete) {
+            return None;
+        }
+        self.urgency = Urgency::Usual;
+        if self.listen(now) {
             return None;
         }
         let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
@@ -412,15 +418,13 @@ impl<P: Protocol> Entry<P> {
 
     /// Forgets what was sent before if no answer to that can come any more. Then it listens, and is due since a time.
     fn forget(&mut self, from: u32, now: u32) {
-        let is_over = |until: &u32| has_come(*until, now);
-        if self.deaf().as_ref().is_some_and(is_over) {
-            return self.begin(from, now);
-        }
-        if self.tail_until().as_ref().is_some_and(is_over) {
+        let Some(until) = self.tail_until().filter(|until| has_come(*until, now)) else { return };
+        if self.deaf() == Some(until) {
+            self.begin(from, now);
+        } else {
             self.set_tail(None);
+            self.know_members();
         }
-        self.sent = self.sent.filter(|sent| !is_over(&sent.closes));
-        self.know_members();
     }
 
     /// Begins a round, and listens. What can still answer what was sent before is not forgotten.
@@ -454,7 +458,8 @@ impl<P: Protocol> Entry<P> {
     /// Ends the round, until no answer can come any more.
     pub fn rest(&mut self, is_lost: bool) {
         let until = self.open_until().unwrap_or_else(|| self.until());
-        (self.state, self.unheard) = (State::Resting { until, is_lost }, 0);
+        (self.state, self.unheard, self.urgency) = (State::Resting { until, is_lost }, 0, Urgency::Usual);
+        self.wait_for_leader();
         if let (Some(leader), false) = (&mut self.leader, is_lost) {
             leader.tries = 0;
         }

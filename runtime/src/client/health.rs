@@ -17,6 +17,11 @@ impl Health {
         self.silent = self.silent.either(nodes);
     }
 
+    /// Forgets who has not answered, as far as the program does not know it.
+    pub fn forget(&mut self) {
+        self.silent = self.silent.both(&self.told);
+    }
+
     /// Notes that a module has spoken.
     pub fn heard(&mut self, node: u8) {
         self.silent.remove(node);

@@ -270,7 +270,9 @@ impl<P: Protocol> Entry<P> {
         if let Some(from) = old.due(now).filter(|from| earlier(*from, self.until(), now)) {
             self.state = State::Due { from };
         }
-        self.urgency = self.urgency.max(old.urgency);
+        if matches!(old.state, State::Due { .. }) {
+            self.urgency = self.urgency.max(old.urgency);
+        }
         if old.node() == self.node() {
             (self.begun, self.unheard, self.is_heard) = (old.begun, old.unheard, old.is_heard);
         }

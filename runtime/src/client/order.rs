@@ -90,7 +90,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// What is due waits for the gap, and for answers to others. So a program has not called `poll` for a while if
     /// nothing was sent for longer than that.
     pub(super) fn doubt_leaders(&mut self, now: u32) {
-        let is_idle = self.free.is_none();
+        let is_idle = self.busy.is_none();
         for place in 0..N {
             let Some(Some(entry)) = self.entries.get(place) else { continue };
             let Some(leader) = entry.leader.filter(|_| entry.due(now).is_some()) else { continue };
@@ -199,6 +199,13 @@ impl<P: Protocol> Entry<P> {
         leader.is_wanted = tries < self.pace.tries;
         leader.tries = if leader.is_wanted { tries } else { 0 };
         leader.is_wanted
+    }
+
+    /// Waits until what it follows is in effect anew, which is to be soon.
+    pub fn want_leader(&mut self) {
+        let Some(leader) = &mut self.leader else { return };
+        leader.is_wanted |= !leader.is_awaited || matches!(self.state, State::Due { .. });
+        leader.is_awaited = true;
     }
 
     /// Notes that it is not sent again before what it follows is in effect anew.
