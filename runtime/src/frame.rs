@@ -6,6 +6,10 @@ use embedded_can::{ExtendedId, Id, StandardId};
 
 use crate::Data;
 
+mod candump;
+
+pub use candump::NotAFrame;
+
 /// A classic CAN data frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Frame {

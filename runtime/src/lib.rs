@@ -86,7 +86,7 @@ pub use entry::Entry;
 pub use error::{Error, Reason, ValueError};
 pub use exchange::{Access, Exchange};
 pub use filter::{Filter, Selector};
-pub use frame::Frame;
+pub use frame::{Frame, NotAFrame};
 pub use layout::Layout;
 pub use long::{Elements, LongLayout, LongSignal, LongText, parts, transfers};
 pub use number::Number;

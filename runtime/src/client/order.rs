@@ -38,7 +38,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// Another request can follow this one, and so on. When a new round of `first` begins, all that follows it
     /// waits anew, and its answers are late. So renew `first` more slowly than all of them can be answered.
-    /// What [replaces](Self::hold) `first` leads in its place. If `first` is [cancelled](Self::cancel), or
+    /// What [replaces](Self::hold) `first` leads in its place. If other values replace it again and again, so fast that
+    /// no answer counts, it is never in effect. Then what follows it is never sent. It would otherwise switch on by a
+    /// value that is not wanted any more. So leave the time of [`between_values`](super::Pace::between_values) between
+    /// two values. Then it is sent within that time if the module answers. If `first` is [cancelled](Self::cancel), or
     /// something that is asked ends it, what follows it ends, too, without an event.
     ///
     /// Another value that is held of the same message and access without an order replaces this request. So a

@@ -47,6 +47,21 @@ impl Pace {
     }
 }
 
+impl Pace {
+    /// Returns the time to leave between two values of what is [held](super::Client::hold), in milliseconds. No answer to
+    /// the first one can come after that, so an answer to the second one counts at once.
+    ///
+    /// ```
+    /// use canspec_runtime::client::Pace;
+    ///
+    /// assert_eq!(Pace { gap: 20, wait: 100, tries: 3, late: 50 }.between_values(), 170);
+    /// ```
+    #[must_use]
+    pub const fn between_values(&self) -> u32 {
+        self.gap.saturating_add(self.wait).saturating_add(self.late)
+    }
+}
+
 /// Counts whole milliseconds, none too few.
 fn milliseconds(time: Duration) -> Option<u32> {
     u32::try_from(time.as_nanos().div_ceil(1_000_000)).ok().filter(|time| *time <= LONGEST)

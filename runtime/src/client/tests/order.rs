@@ -63,6 +63,35 @@ fn answers(client: &mut Asking, frame: &Frame, to: Ticket) -> bool {
 }
 
 #[test]
+fn what_follows_a_set_point_that_rises_slowly_enough_is_sent_after_each_step() {
+    let sent_by = |step: u32| {
+        let (mut client, [mut first, _]) = held();
+        let (mut due, mut count) = (None, 0);
+        for now in 0..2000 {
+            if now % step == 0 {
+                first = client.hold(set(f64::from(10 * (now / step))), REFRESH, repeats, now).expect("it is held");
+            }
+            if let Some((_, frame)) = due.take_if(|(at, _)| *at == now) {
+                let _ = client.handle(&frame, now);
+            }
+            for (_, frame) in sent(&mut client, now..now + 1) {
+                count += u32::from(frame == *on(3).frame());
+                let steps = if frame == *on(3).frame() { None } else { Some(frame.bytes()[3]) };
+                due = Some((now + 30, steps.map_or(is_on(3), echo)));
+            }
+        }
+        assert!(client.hold(set(0.0), REFRESH, repeats, 2000).is_ok_and(|stop| stop != first));
+        count
+    };
+    // The set-points of 0, 220 and so on to 1760 ms are in effect 30 ms later, and the switch-on is sent then.
+    let slow = PACE.between_values();
+    assert_eq!(slow, 220);
+    assert_eq!(sent_by(slow), 9);
+    // No answer counts, since each could be one to the step before.
+    assert_eq!(sent_by(PACE.gap), 0);
+}
+
+#[test]
 fn the_second_is_sent_as_soon_as_the_first_is_in_effect_and_again_after_each_renewal() {
     let (mut client, [first, second]) = held();
     for round in [0, 1000, 2000] {
