@@ -204,6 +204,32 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         self.place.read(data)
     }
 
+    /// Returns the name of a raw or physical value if it is a special one. Such a value is no number in the unit.
+    ///
+    /// What is decoded has its bits, so that the same bits can be sent again.
+    ///
+    /// ```
+    /// use canspec_runtime::{Place, Signal};
+    ///
+    /// const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1))
+    ///     .unit("V")
+    ///     .scale(1, 200)
+    ///     .specials(&[(0xFFFE, "out_of_range"), (0xFFFF, "not_available")])
+    ///     .absent();
+    ///
+    /// let measured = |data| VOLTAGE.decode_some(data, 8).filter(|volts| VOLTAGE.special_of(*volts).is_none());
+    /// assert_eq!(measured(&[0x09, 0xC4, 0, 0, 0, 0, 0, 0]), Some(12.5));
+    /// assert_eq!(measured(&[0xFF, 0xFE, 0, 0, 0, 0, 0, 0]), None);
+    ///
+    /// assert_eq!(VOLTAGE.decode(&[0xFF, 0xFE, 0, 0, 0, 0, 0, 0]), 327.67);
+    /// assert_eq!(VOLTAGE.special_of(327.67), Some("out_of_range"));
+    /// assert_eq!(VOLTAGE.special_of(0xFFFE_u16), Some("out_of_range"));
+    /// ```
+    pub fn special_of<P: Physical<R>>(&self, value: P) -> Option<&'static str> {
+        let (value, of) = (value.told(), |raw: i64| P::of(R::from_bits(raw as u64), self.scale).told());
+        self.specials.iter().find(|(raw, _)| of(*raw) == value).map(|(_, name)| *name)
+    }
+
     /// Writes a raw value.
     ///
     /// # Errors

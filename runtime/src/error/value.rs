@@ -56,7 +56,7 @@ pub enum Reason {
 }
 
 /// A refused value.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum Value {
     /// The bits of a raw value.
     Raw(u64),

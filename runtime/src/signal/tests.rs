@@ -1,7 +1,7 @@
 use std::string::ToString;
 
 use super::*;
-use crate::{Meaning, Text};
+use crate::{Bcd, Meaning, Text};
 
 const CURRENT: Signal<i16, f64> = Signal::new("current", Place::bytes(7, 0).bits(23, 12)).unit("A").scale(1, 10);
 const TEMPERATURE: Signal<u8, f64> = Signal::new("temperature", Place::byte(3))
@@ -113,6 +113,25 @@ fn a_special_value_is_legal_outside_the_limits() {
     let mut payload = request();
     assert_eq!(TEMPERATURE.write(Meaning::Name("broken"), &mut payload), Ok(()));
     TEMPERATURE.read(payload.data(), &mut |reading| assert_eq!(reading.meaning, Meaning::Name("broken")));
+}
+
+#[test]
+fn a_special_value_is_told_from_numbers_by_its_name() {
+    const STATE: Signal<i8> = Signal::new("state", Place::byte(0)).specials(&[(-128, "open"), (127, "short")]);
+    const WHOLE: Signal<u16, f64> = Signal::new("whole", Place::bytes(0, 1)).specials(&[(0xFFFE, "out_of_range")]);
+    const SINGLE: Signal<u16, f32> = WHOLE.on_model().scale(1, 200);
+    const DATE: Signal<Bcd<u8>> = Signal::new("date", Place::byte(0)).specials(&[(0x99, "never")]);
+    // 255 / 2 - 40
+    assert_eq!(
+        [87.5, 87.0, 87.499_999, f64::NAN].map(|value| TEMPERATURE.special_of(value)),
+        [Some("broken"), None, None, None]
+    );
+    assert_eq!([255, 254].map(|raw: u8| TEMPERATURE.special_of(raw)), [Some("broken"), None]);
+    assert_eq!([-128, 127, 0].map(|raw: i8| STATE.special_of(raw)), [Some("open"), Some("short"), None]);
+    assert_eq!([65534.0, 327.67].map(|value: f64| WHOLE.special_of(value)), [Some("out_of_range"), None]);
+    assert_eq!([327.67, 65534.0].map(|value: f32| SINGLE.special_of(value)), [Some("out_of_range"), None]);
+    assert_eq!([0x99, 0x98].map(|bits| DATE.special_of(Bcd::<u8>::from_bits(bits))), [Some("never"), None]);
+    assert_eq!(CURRENT.special_of(0.0), None);
 }
 
 #[test]

@@ -29,6 +29,19 @@ fn an_angle_in_the_midst_of_a_word_leaves_the_other_bits_alone() {
 }
 
 #[test]
+fn a_special_delay_is_told_from_seconds() {
+    // Raw 0 means `never`; as seconds it would be 8.
+    let delay = |raw| match decoded(&frame(0x0191_01E1, &[1, 0x23, 0xFA, raw, 1])).request() {
+        Some(Message::SetSpeed(speed)) => (speed.delay_s, SetSpeed::DELAY.special_of(speed.delay_s)),
+        _ => panic!("it sets the speed"),
+    };
+    assert_eq!([0, 1].map(delay), [(8.0, Some("never")), (10.0, None)]);
+    let mut shown = Vec::new();
+    decoded(&frame(0x0191_01E1, &[1, 0x23, 0xFA, 0, 1])).visit(|reading| shown.push(reading.to_string()));
+    assert_eq!(shown, ["speed -750.5 rpm", "delay never", "power off"]);
+}
+
+#[test]
 fn power_0_is_on_and_power_1_is_off() {
     let speed = |power| sent(SetSpeed { power, ..SLOWLY }.set(Target::Fan(1)));
     assert_eq!(speed(Power::On), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 0]));

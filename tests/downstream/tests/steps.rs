@@ -35,6 +35,7 @@ fn a_step_beyond_a_limit_is_refused() {
     // 10 s is raw 1, 200 s is raw 96, and raw 0 is special.
     assert_eq!([0, 1, 96, 97].map(delay), [true, true, true, false]);
     assert_eq!(SetSpeed::DELAY_NEVER, 0);
+    assert_eq!([0, 1].map(|raw: u8| SetSpeed::DELAY.special_of(raw)), [Some("never"), None]);
 }
 
 #[test]
