@@ -88,7 +88,7 @@ impl Incoming {
     /// Returns the values that the frame carries if it is of a message.
     #[inline(always)]
     pub fn values<L: Layout>(&self) -> L {
-        L::read(&self.frame)
+        L::read(&self.frame, self.model)
     }
 
     /// Sets the numbers of data bytes that the message can have.

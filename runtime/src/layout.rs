@@ -14,10 +14,17 @@ pub trait Layout: Sized + 'static {
     /// The numbers of data bytes that such a frame can have, if there are several.
     const LENGTHS: &'static [u8] = &[];
 
-    /// Reads the values from a frame, which may lack those that are optional.
+    /// Reads the values from a frame of a device model. The frame may lack those that are optional.
     #[inline(always)]
-    fn read(frame: &Frame) -> Self {
-        Self::read_some(&frame.bytes(), frame.length())
+    fn read(frame: &Frame, model: Option<u8>) -> Self {
+        Self::read_some(&frame.bytes(), frame.length()).on_model(&frame.bytes(), model)
+    }
+
+    /// Leaves out optional values that the device model does not have, if no bit of the data shows them.
+    #[must_use]
+    #[inline(always)]
+    fn on_model(self, _data: &Data, _model: Option<u8>) -> Self {
+        self
     }
 
     /// Reads the values from the data of a frame of `length` bytes.

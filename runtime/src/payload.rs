@@ -36,7 +36,8 @@ pub struct Payload {
     keeps_limits: bool,
     model: Option<u8>,
     length: Option<u8>,
-    received: u8,
+    /// How many data bytes the frame had from which the bytes are, if they are from one.
+    received: Option<u8>,
     outcome: Result<(), Error>,
 }
 
@@ -55,7 +56,7 @@ impl Payload {
 
     #[inline(always)]
     const fn owned(owner: Owner, data: Data) -> Self {
-        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0, outcome: Ok(()) }
+        Self { owner, data, keeps_limits: false, model: None, length: None, received: None, outcome: Ok(()) }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
@@ -83,13 +84,26 @@ impl Payload {
     #[must_use]
     #[inline(always)]
     pub(crate) const fn received_with(self, received: u8) -> Self {
-        Self { received, ..self }
+        Self { received: Some(received), ..self }
     }
 
     /// Tests whether the bytes are from a frame with at least `length` data bytes.
     #[inline(always)]
     pub const fn had(&self, length: u8) -> bool {
-        self.received >= length
+        matches!(self.received, Some(received) if received >= length)
+    }
+
+    /// Tests whether a frame of `length` data bytes is made although a signal at its end has no value. Only some device
+    /// models have the signal.
+    /// - A request to such a model is refused without it.
+    /// - A frame that was received with it comes from a model that does not have it.
+    #[inline(always)]
+    pub fn reaches<R: Raw, F: Physical<R>>(&self, signal: &Signal<R, F>, length: u8) -> bool {
+        match (signal.blank(self.model), self.received) {
+            (None, None) => self.keeps_limits && self.model.is_some(),
+            (Some(_), Some(received)) => received >= length,
+            _ => false,
+        }
     }
 
     /// Sets the number of data bytes, of a message that can have several.

@@ -176,7 +176,7 @@ impl<P: Quantities> Received<P> {
     /// - an `i32` cannot hold it.
     pub fn quantity(&self, quantity: Quantity) -> Option<i32> {
         let path = P::READS.iter().find(|path| path.quantity == quantity && path.is_in(self))?;
-        if self.is_error_reply() { None } else { path.value.read(self.frame()) }
+        if self.is_error_reply() { None } else { path.value.read(self.frame(), self.model()) }
     }
 
     /// Returns the value of a quantity that a request sets, or that its reply says is in effect. It counts as

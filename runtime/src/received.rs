@@ -197,21 +197,28 @@ impl<P: Protocol> Received<P> {
 
     /// Shows the signals to `visitor`, by first byte. Those of an error reply are marked, and have
     /// no value as a text.
+    ///
+    /// It leaves out what the device model does not have, unless bits show it.
     pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
         let is_of_error_reply = self.is_error_reply();
-        let signals = self.signals().iter().filter(|signal| signal.place().is_within(self.frame.length()));
-        for signal in signals {
+        for signal in self.shown() {
             signal.read(&self.frame.bytes(), &mut |reading| visitor(Reading { is_of_error_reply, ..reading }));
         }
+    }
+
+    /// Returns the signals that the frame has, and the device model too, unless bits show others.
+    fn shown(&self) -> impl Iterator<Item = &'static dyn AnySignal> {
+        let (data, length, model) = (self.frame.bytes(), self.frame.length(), self.model());
+        let signals = self.signals().iter().filter(move |signal| signal.place().is_within(length));
+        signals.copied().filter(move |signal| !signal.is_hidden(&data, model))
     }
 
     /// Returns the set bits of all status words that have a name, whatever their severity. An error
     /// reply has none, since its values mean nothing.
     pub fn conditions(&self) -> impl Iterator<Item = &'static StatusBit> {
-        let (data, length) = (self.frame.bytes(), self.frame.length());
-        let signals = self.signals().iter().filter(move |signal| signal.place().is_within(length));
-        let is_of_error_reply = self.is_error_reply();
-        let words = signals.filter(move |_| !is_of_error_reply).filter_map(move |signal| status_word(*signal, data));
+        let (data, is_of_error_reply) = (self.frame.bytes(), self.is_error_reply());
+        let words =
+            self.shown().filter(move |_| !is_of_error_reply).filter_map(move |signal| status_word(signal, data));
         words.flat_map(|(bits, known)| set_bits(bits, known))
     }
 

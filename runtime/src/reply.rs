@@ -36,7 +36,7 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
         let values = match failure::<P>(selectors, frame.has_length(length, R::LENGTHS), &frame) {
             Some(failure) => Err(failure),
-            None => Ok(R::read(&frame)),
+            None => Ok(R::read(&frame, None)),
         };
         Self { values, selectors, frame, protocol: PhantomData }
     }

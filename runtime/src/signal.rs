@@ -314,6 +314,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         !self.lacking.is_empty() && has_lacking_bits(self.lacking, payload.model())
     }
 
+    /// Returns what the bits are on the device model, if it does not have the signal.
+    #[inline(always)]
+    pub(crate) fn blank(&self, model: Option<u8>) -> Option<u64> {
+        if self.lacking.is_empty() { None } else { blank_on(self.lacking, model) }
+    }
+
     /// Returns the value that limits apply to.
     #[inline(always)]
     fn physical(&self, raw: R) -> F {
@@ -392,8 +398,10 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 /// What a device model does not have of a signal.
 #[derive(Clone, Copy, Debug)]
 pub enum Lack {
-    /// Bits, and what they are on such a model.
-    Bits(u64, u64),
+    /// All bits of the signal, and what they are on such a model.
+    Signal(u64, u64),
+    /// Bits of a signal that the model has. They are 0 there.
+    Bits(u64),
     /// A raw value that has a name on other models.
     Value(i64),
 }
@@ -403,7 +411,8 @@ impl Lack {
     #[inline(always)]
     const fn is_shown_by(self, bits: u64) -> bool {
         match self {
-            Self::Bits(mask, blank) => (bits ^ blank) & mask != 0,
+            Self::Signal(mask, blank) => (bits ^ blank) & mask != 0,
+            Self::Bits(mask) => bits & mask != 0,
             Self::Value(raw) => raw as u64 == bits,
         }
     }
@@ -418,7 +427,16 @@ fn shows_lack(lacking: &[(u8, Lack)], model: Option<u8>, bits: u64) -> bool {
 /// Tests whether a device model does not have bits of a signal. All types of signals share the code.
 #[cold]
 fn has_lacking_bits(lacking: &[(u8, Lack)], model: Option<u8>) -> bool {
-    lacking.iter().any(|(known, lack)| Some(*known) == model && matches!(lack, Lack::Bits(..)))
+    lacking.iter().any(|(known, lack)| Some(*known) == model && !matches!(lack, Lack::Value(_)))
+}
+
+/// Returns what the bits of a signal are on a device model that does not have it. All types of signals share the code.
+#[cold]
+fn blank_on(lacking: &[(u8, Lack)], model: Option<u8>) -> Option<u64> {
+    lacking.iter().find_map(|(known, lack)| match lack {
+        Lack::Signal(_, blank) if Some(*known) == model => Some(*blank),
+        Lack::Signal(..) | Lack::Bits(_) | Lack::Value(_) => None,
+    })
 }
 
 /// Returns which named value bits are. All types of signals share the code.

@@ -46,8 +46,8 @@ pub enum Reason {
     NotFinite,
     /// The signal has no value of this kind or name.
     Meaning,
-    /// An optional signal has no value, but the frame is long enough for it: a value behind it is
-    /// given.
+    /// An optional signal has no value, but the frame is long enough for it. A value behind it is
+    /// given, or the chosen device model is one of the few that have the signal.
     Missing,
     /// A frame to a module would carry another part of a long message than before: its number, or
     /// its data. Only the whole message makes such frames, since its limits hold for all parts
@@ -169,7 +169,7 @@ impl fmt::Display for ValueError {
             }
             Reason::NotFinite => formatter.write_str("is no finite number"),
             Reason::Meaning => formatter.write_str("has no such value"),
-            Reason::Missing => formatter.write_str("is left out, but what stands behind it is not"),
+            Reason::Missing => formatter.write_str("is left out, but the frame is long enough for it"),
             Reason::Part => formatter.write_str("is that of another part, which only the whole message makes"),
         }
     }

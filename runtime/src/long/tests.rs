@@ -126,7 +126,7 @@ impl Plate {
     const CODE: LongSignal<u16> = LongSignal::new(0, Signal::new("code", Place::bytes(0, 1)));
     const NAME: LongText<Text<9, b' '>> = LongText::new(2, Signal::new("name", Place::byte(0)));
     const SERIAL: LongText<Bytes<12>> =
-        LongText::new(11, Signal::new("serial", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]));
+        LongText::new(11, Signal::new("serial", Place::byte(0)).lacking(&[(7, Lack::Signal(0xFF, 0))]));
 }
 
 impl LongLayout for Plate {
@@ -250,7 +250,7 @@ fn all_bytes_of_open_raw_bytes_belong_to_them() {
 
 #[test]
 fn a_device_model_that_lacks_an_open_text_is_sent_none_of_its_bytes() {
-    const BYTE: Signal<u8> = Signal::new("text", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]);
+    const BYTE: Signal<u8> = Signal::new("text", Place::byte(0)).lacking(&[(7, Lack::Signal(0xFF, 0))]);
     const TEXT: LongText<Text<6, b'_'>> = LongText::new(1, BYTE);
     const TEXTS: [LongText<Text<6, b'_'>>; 2] = [TEXT.at_least(0), TEXT.at_least(1)];
     let written = |least: u16, letters: &str| {

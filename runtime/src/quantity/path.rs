@@ -247,11 +247,19 @@ fn put(place: Place, bits: u64, payload: &mut Payload) {
 }
 
 impl Value<&'static dyn ReadNumber> {
-    /// Reads the value in a frame, if it shows one.
-    pub(super) fn read(&self, frame: &Frame) -> Option<i32> {
+    /// Reads the value in a frame of a device model, if it shows one.
+    pub(super) fn read(&self, frame: &Frame, model: Option<u8>) -> Option<i32> {
+        let data = frame.bytes();
+        let shows =
+            |signal: &dyn ReadNumber| signal.place().is_within(frame.length()) && !signal.is_hidden(&data, model);
         match self {
-            Self::Number(signal) if signal.place().is_within(frame.length()) => signal.read_number(&frame.bytes()),
-            Self::Number(_) => None,
+            Self::Number(signal) => {
+                if shows(*signal) {
+                    signal.read_number(&data)
+                } else {
+                    None
+                }
+            }
             Self::Switch(states) => states.shown(frame),
         }
     }

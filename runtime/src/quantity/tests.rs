@@ -1,7 +1,8 @@
 use std::string::ToString;
 
+use super::path::Value;
 use super::single;
-use crate::plumbing::States;
+use crate::plumbing::{Lack, States};
 use crate::tests::heaters::{Heat, Message, To};
 use crate::tests::random::Random;
 use crate::{
@@ -57,6 +58,18 @@ fn what_lies_beyond_a_limit_is_refused_by_its_own_value() {
     assert_eq!(refused(-1), "`voltage` of `set` is -0.001 V, but its limits are 0 and 6553.5 V");
     assert_eq!([-103_500, -103_501].map(|value| set(&HALVES, value).is_ok()), [true, false]);
     assert_eq!([24_000, 24_001].map(|value| set(&HALVES, value).is_ok()), [true, false]);
+}
+
+#[test]
+fn a_device_model_without_the_signal_has_no_number_of_it() {
+    const HEAT: Signal<u8> = Signal::new("heat", Place::byte(0)).unit("W").lacking(&[(4, Lack::Signal(0xFF, 0))]);
+    let read = |model, raw, length| {
+        let frame = Frame::new_raw(0x7, true, [raw, 0, 0, 0, 0, 0, 0, 0], length);
+        Value::<&dyn ReadNumber>::Number(&HEAT).read(&frame, model)
+    };
+    assert_eq!([None, Some(3), Some(4)].map(|model| read(model, 0, 1)), [Some(0), Some(0), None]);
+    assert_eq!(read(Some(4), 2, 1), Some(2000), "bits show it");
+    assert_eq!(read(None, 0, 0), None);
 }
 
 /// Whether a heater is on.

@@ -54,6 +54,9 @@ pub trait AnySignal {
     /// model is chosen.
     fn limits(&self) -> Option<(Number, Number)>;
 
+    /// Tests whether a device model does not have the signal, and no bit of the data shows it.
+    fn is_hidden(&self, data: &Data, model: Option<u8>) -> bool;
+
     /// Shows the signal's value in a frame to `visitor`.
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>));
 }
@@ -73,6 +76,10 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
 
     fn limits(&self) -> Option<(Number, Number)> {
         self.limits.map(|limits| self.numbers(limits))
+    }
+
+    fn is_hidden(&self, data: &Data, model: Option<u8>) -> bool {
+        self.blank(model).is_some_and(|blank| self.place.get(data) == blank)
     }
 
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {

@@ -51,16 +51,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Writes that there is no value, unless the frame ends before it.
     fn left_out(&'static self, payload: &mut Payload) -> Result<(), Error> {
-        match payload.length() {
-            Some(length) if !self.place.is_within(length.into()) => Ok(()),
-            _ if self.has_absent => {
-                let mut data = *payload.data();
-                self.place.put(&mut data, self.absent_bits());
-                payload.replace(data);
-                Ok(())
-            }
-            _ => Err(self.refused(Fault::Missing, payload)),
+        if payload.length().is_some_and(|length| !self.place.is_within(length.into())) {
+            return Ok(());
         }
+        let absent = self.has_absent.then(|| self.absent_bits());
+        let bits = self.blank(payload.model()).or(absent).ok_or_else(|| self.refused(Fault::Missing, payload))?;
+        payload.replace(self.with(*payload.data(), bits));
+        Ok(())
     }
 }
 

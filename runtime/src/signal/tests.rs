@@ -80,7 +80,7 @@ fn a_value_is_left_out_only_where_the_frame_ends_before_it() {
         HOURS.put_some(None, &mut payload)
     };
     assert_eq!([2, 3].map(left_out), [Ok(()); 2]);
-    let text = "`hours` of `report` is left out, but what stands behind it is not";
+    let text = "`hours` of `report` is left out, but the frame is long enough for it";
     assert_eq!(refusal(left_out(4)), text);
     assert_eq!(refusal(HOURS.put_some(None, &mut reply())), text);
     assert!([4, 5].map(|length| reply().received_with(4).had(length)) == [true, false]);
@@ -323,4 +323,35 @@ fn every_number_of_64_bits_is_exact() {
     assert_eq!(COUNTER.get(payload.data()), u64::MAX);
     let written = |number| COUNTER.write(Meaning::Number(number), &mut payload.clone()).is_ok();
     assert_eq!([Number::Float(-1.0), Number::Signed(-1)].map(written), [false; 2]);
+}
+
+#[test]
+fn what_a_device_model_lacks_is_blank_and_hidden_and_left_out() {
+    const HEAT: Signal<i16> = Signal::new("heat", Place::bytes(0, 1))
+        .lacking(&[(3, Lack::Value(5)), (4, Lack::Signal(0xFFFF, 0xFF00))])
+        .absent();
+    let hidden = |model, bits: u16| {
+        let [high, low] = bits.to_be_bytes();
+        HEAT.is_hidden(&[high, low, 0, 0, 0, 0, 0, 0], model)
+    };
+    assert_eq!([None, Some(3), Some(4)].map(|model| hidden(model, 0xFF00)), [false, false, true]);
+    assert_eq!([0xFF01, 0x0000].map(|bits| hidden(Some(4), bits)), [false; 2]);
+    let left_out = |model| {
+        let mut payload = request().for_model(model);
+        HEAT.put_some(None, &mut payload).map(|()| u16::from_be_bytes([payload.data()[0], payload.data()[1]]))
+    };
+    assert_eq!([None, Some(3), Some(4)].map(left_out), [Ok(0x7FFF), Ok(0x7FFF), Ok(0xFF00)]);
+    assert_eq!([-256, 0].map(|heat| HEAT.put(heat, &mut request().for_model(Some(4))).is_ok()), [true, false]);
+}
+
+#[test]
+fn only_a_new_request_to_a_model_with_the_signal_or_a_frame_of_one_without_it_reaches_it() {
+    const HEAT: Signal<u8> = Signal::new("heat", Place::byte(2)).lacking(&[(4, Lack::Signal(0xFF, 0))]);
+    let models = [None, Some(3), Some(4)];
+    assert_eq!(models.map(|model| request().for_model(model).reaches(&HEAT, 3)), [false, true, false]);
+    assert_eq!(models.map(|model| reply().for_model(model).reaches(&HEAT, 3)), [false; 3]);
+    let received = |model, length| request().received_with(length).for_model(model).reaches(&HEAT, 3);
+    assert_eq!(models.map(|model| received(model, 0)), [false; 3]);
+    assert_eq!(models.map(|model| received(model, 2)), [false; 3]);
+    assert_eq!(models.map(|model| received(model, 3)), [false, false, true]);
 }

@@ -146,7 +146,7 @@ fn a_frame_ends_before_what_is_not_there_and_its_spare_bits_are_ones() {
     assert_eq!(sent(set(hours(None, Some(7), None))), frame(0x00D3_01E1, &[1, 0xFF, 0x41, 0x20, 0xF7]));
     assert_eq!(sent(set(hours(None, None, None))), frame(0x00D3_01E1, &[1, 0xFF, 0x41, 0x20]));
     let missing = set(hours(None, None, Some(0))).map(|_| ()).expect_err("there is a value behind it");
-    assert_eq!(missing.to_string(), "`stops` of `hours` is left out, but what stands behind it is not");
+    assert_eq!(missing.to_string(), "`stops` of `hours` is left out, but the frame is long enough for it");
 }
 
 #[test]

@@ -1,6 +1,19 @@
 //! Scales and offsets that depend on the device model.
 
-use winch_driver::rectifier::{Model, SetOutput, Target};
+use winch_driver::rectifier::embedded_can::{Frame as _, StandardId};
+use winch_driver::rectifier::{Error, Frame, Message, Model, Received, SetCharge, SetOutput, SetService, Target};
+
+fn received(id: u16, data: &[u8], model: Model) -> Received {
+    let id = StandardId::new(id).expect("eleven bits");
+    let frame = Frame::new(id, data).expect("at most eight bytes");
+    Message::decode_for(model, &frame).expect("a frame of the protocol")
+}
+
+fn shown(received: &Received) -> Vec<String> {
+    let mut shown = Vec::new();
+    received.visit(|reading| shown.push(reading.to_string()));
+    shown
+}
 
 #[test]
 fn a_number_is_read_and_set_in_the_steps_of_a_device_model() {
@@ -24,4 +37,57 @@ fn a_refusal_names_the_limits_of_the_device_model() {
     let text = "`current` of `set_output` is 50.5 A, but its limits are 0 and 50 A";
     assert_eq!((refused.to_string().as_str(), output.current_raw), (text, 7));
     assert!(output.set_current(Model::R30, 50.5).is_ok());
+}
+
+#[test]
+fn a_request_has_what_only_its_device_model_has() {
+    let charge = |warmth_w| SetCharge { charge_percent: 84, warmth_w };
+    let sent = |model, warmth_w| {
+        let within = charge(warmth_w).within(model)?;
+        within.set(Target::Rectifier).map(|request| request.frame().to_string())
+    };
+    assert_eq!(sent(Model::R20, None).as_deref(), Ok("006#54"));
+    assert_eq!(sent(Model::R30, Some(96)).as_deref(), Ok("006#540060"));
+    let refused = |sent: Result<String, Error>| sent.expect_err("a refusal").to_string();
+    let text = "`warmth` of `set_charge` is left out, but the frame is long enough for it";
+    assert_eq!(refused(sent(Model::R30, None)), text);
+    assert_eq!(refused(sent(Model::R20, Some(96))), "`warmth` of `set_charge` has no such value");
+    let request = charge(None).set(Target::Rectifier).map(|request| request.frame().to_string());
+    assert_eq!(request.as_deref(), Ok("006#54"), "no model is chosen");
+}
+
+#[test]
+fn a_value_that_the_device_model_does_not_have_is_there_only_if_bits_show_it() {
+    for (model, data, warmth_w, readings) in [
+        (Model::R20, &[84, 0, 0][..], None, &["charge 84 %"][..]),
+        (Model::R20, &[84, 0, 96], Some(96), &["charge 84 %", "warmth 96 W"]),
+        (Model::R20, &[84], None, &["charge 84 %"]),
+        (Model::R30, &[84, 0, 0], Some(0), &["charge 84 %", "warmth 0 W"]),
+        (Model::R30, &[84], None, &["charge 84 %"]),
+    ] {
+        let reply = received(0x007, data, model);
+        assert_eq!(reply.content(), &Message::SetCharge(SetCharge { charge_percent: 84, warmth_w }), "{data:?}");
+        assert_eq!(shown(&reply), readings, "{data:?}");
+        for id in [0x006, 0x007] {
+            let again = received(id, data, model);
+            let is_taken = id == 0x007 || model == Model::R30 || warmth_w.is_none();
+            assert_eq!(again.encode().ok(), is_taken.then(|| *again.frame()), "{data:?}");
+        }
+    }
+}
+
+#[test]
+fn a_value_is_absent_only_on_a_device_model_that_has_it() {
+    let sent = |model, hours_h| {
+        let within = SetService { hours_h }.within(model).expect("it is legal");
+        within.set(Target::Rectifier).expect("it is legal").frame().to_string()
+    };
+    assert_eq!([Model::R20, Model::R30].map(|model| sent(model, None)), ["008#00000000", "008#FFFF0000"]);
+    let hours = |model, high| match received(0x009, &[high, high, 0, 0], model).content() {
+        Message::SetService(service) => service.hours_h,
+        _ => panic!("it is the service"),
+    };
+    assert_eq!([0, 0xFF, 1].map(|high| hours(Model::R30, high)), [Some(0), None, Some(0x0101)]);
+    assert_eq!([0, 1].map(|high| hours(Model::R20, high)), [None, Some(0x0101)]);
+    assert_eq!(shown(&received(0x009, &[0; 4], Model::R20)), [""; 0]);
 }

@@ -221,11 +221,12 @@ impl SetLimits {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u8> = Signal::new("current", Place::byte(0)).unit("A").limits(0, 100);
     /// The signal `heating`, to read or write it alone, or to ask for its limits.
-    pub const HEATING: Signal<u8> =
-        Signal::new("heating", Place::byte(1)).limits(10, 200).lacking(&[(Model::V1_2 as u8, Lack::Bits(0xFF, 0x00))]);
+    pub const HEATING: Signal<u8> = Signal::new("heating", Place::byte(1))
+        .limits(10, 200)
+        .lacking(&[(Model::V1_2 as u8, Lack::Signal(0xFF, 0x00))]);
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<SetLimitsAlarms> =
-        Signal::new("alarms", Place::byte(2)).lacking(&[(Model::V1_2 as u8, Lack::Bits(0x02, 0x00))]);
+        Signal::new("alarms", Place::byte(2)).lacking(&[(Model::V1_2 as u8, Lack::Bits(0x02))]);
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_limits").id(Identifier::COMMAND, 0x002).length(4);
 
@@ -287,7 +288,7 @@ impl SetCharge {
     pub const WARMTH: Signal<u16> = Signal::new("warmth", Place::bytes(1, 2))
         .unit("W")
         .limits(0, 500)
-        .lacking(&[(Model::V1_2 as u8, Lack::Bits(0xFFFF, 0x0000))]);
+        .lacking(&[(Model::V1_2 as u8, Lack::Signal(0xFFFF, 0x0000))]);
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_charge").id(Identifier::COMMAND, 0x003).length(1);
 
@@ -325,10 +326,18 @@ impl Layout for SetCharge {
         Self { charge_percent: Self::CHARGE.get(data), warmth_w: Self::WARMTH.get_some(data, length) }
     }
 
+    #[inline]
+    fn on_model(mut self, data: &Data, model: Option<u8>) -> Self {
+        if Self::WARMTH.is_hidden(data, model) {
+            self.warmth_w = None;
+        }
+        self
+    }
+
     #[inline(always)]
     fn write_to(&self, payload: &mut Payload) -> bool {
         payload.end_after(1);
-        if self.warmth_w.is_some() {
+        if self.warmth_w.is_some() || payload.reaches(&Self::WARMTH, 3) {
             payload.end_after(3);
         }
         payload.put(&Self::CHARGE, self.charge_percent) && payload.put_some(&Self::WARMTH, self.warmth_w)

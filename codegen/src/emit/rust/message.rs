@@ -156,7 +156,8 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
         let (put, value) = (&member.put, member.value());
         quote!(payload.#put(&#owner::#constant, self.#value))
     });
-    let end = (!lengths.is_empty()).then(|| end(message, lengths));
+    let end = (!lengths.is_empty()).then(|| end(message, lengths, &owner));
+    let on_model = on_model(&signals, &owner);
     let reserved = reserved.as_ref().map(|(comment, bits)| quote!(#comment const RESERVED: Data = #bits;));
     Some(quote! {
         impl Layout for #name {
@@ -164,6 +165,7 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
             #reserved
             const DECODE: Decode<Self> = |data| #decode;
             #sized
+            #on_model
             #[inline(always)]
             fn write_to(&self, payload: &mut Payload) -> bool { #end #(#writes)&&* }
         }
@@ -191,15 +193,34 @@ fn sized(lengths: &[Length], values: &TokenStream) -> TokenStream {
     }
 }
 
+/// Emits how values are left out that a device model does not have.
+fn on_model(signals: &[&Signal], owner: &TokenStream) -> Option<TokenStream> {
+    let optional = signals.iter().filter(|signal| signal.is_of_some_models && signal.member.is_optional);
+    let cases: Vec<_> = optional
+        .map(|Signal { constant, member, .. }| {
+            let value = member.value();
+            quote!(if #owner::#constant.is_hidden(data, model) { self.#value = None; })
+        })
+        .collect();
+    (!cases.is_empty()).then(|| {
+        quote! {
+            #[inline]
+            fn on_model(mut self, data: &Data, model: Option<u8>) -> Self { #(#cases)* self }
+        }
+    })
+}
+
 /// Emits how long the frame is that has the values which are there.
-fn end(message: &Message, lengths: &[Length]) -> TokenStream {
+fn end(message: &Message, lengths: &[Length], owner: &TokenStream) -> TokenStream {
     let (shortest, longer) = (&lengths[0].bytes, &lengths[1..]);
     let cases = longer.iter().map(|Length { bytes, added }| {
         let signals = || added.iter().map(|id| &message.signals[*id]);
         let members = signals().map(|signal| signal.member.value());
         // Nobody sees from its values whether a frame ended before them, or said that there are none.
         let had = signals().all(|signal| signal.has_absent).then(|| quote!(|| payload.had(#bytes)));
-        quote!(if #(self.#members.is_some())||* #had { payload.end_after(#bytes); })
+        let of_some = signals().filter(|signal| signal.is_of_some_models).map(|signal| &signal.constant);
+        let reaches = of_some.map(|constant| quote!(|| payload.reaches(&#owner::#constant, #bytes)));
+        quote!(if #(self.#members.is_some())||* #had #(#reaches)* { payload.end_after(#bytes); })
     });
     quote!(payload.end_after(#shortest); #(#cases)*)
 }

@@ -45,6 +45,8 @@ pub struct Signal {
     pub has_absent: bool,
     /// What device models do not have: variant of the model, and bits or a value.
     pub lacking: Vec<(Ident, TokenStream)>,
+    /// Whether some device models do not have it at all.
+    pub is_of_some_models: bool,
     /// Whether its scale depends on the device model.
     pub is_by_model: bool,
     /// The methods for device models, if its scale depends on the model.
@@ -234,6 +236,7 @@ impl Context<'_> {
             specials: signal.specials.iter().map(|known| (as_signed(known.raw), known.name.clone())).collect(),
             has_absent: signal.has_absent,
             lacking: self.lacking(message, signal),
+            is_of_some_models: self.protocol.models_of(message).any(|model| !signal.is_of(model)),
             is_by_model: !signal.encoding.by_model().is_empty(),
             scales,
             values: named_values(signal).iter().zip(values).map(special).collect(),
@@ -249,7 +252,9 @@ impl Context<'_> {
         let rows = |known: Lacking| {
             let model = models.variant(known.model);
             let [mask, blank] = [known.mask, known.blank].map(|bits| hexadecimal(bits, signal.place.width()));
-            let bits = (known.mask != 0).then(|| quote!(Lack::Bits(#mask, #blank)));
+            let is_whole = !signal.is_of(known.model);
+            let bits = if is_whole { quote!(Lack::Signal(#mask, #blank)) } else { quote!(Lack::Bits(#mask)) };
+            let bits = (known.mask != 0).then_some(bits);
             let values = known.values.into_iter().map(as_signed).map(|raw| quote!(Lack::Value(#raw)));
             bits.into_iter().chain(values).map(|lack| (model.clone(), lack)).collect::<Vec<_>>()
         };
