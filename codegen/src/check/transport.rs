@@ -10,15 +10,13 @@ use crate::resolve::rules;
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for (id, transport) in protocol.transports.entries() {
         let carried = protocol.long_messages.iter().filter(|long| long.transport() == Some(id));
-        let carried: Vec<&LongMessage> = carried.collect();
-        let mut heads = isotp::Heads::default();
-        for (index, long) in carried.iter().enumerate() {
-            let earlier = &carried[..index];
+        let (mut announced, mut heads) = (j1939::Announced::default(), isotp::Heads::default());
+        for long in carried {
             if let Some(flaw) = partial(long) {
                 diagnostics.push(flaw);
             }
             match &transport.standard {
-                Standard::J1939(groups) => j1939::check(protocol, groups, long, earlier, diagnostics),
+                Standard::J1939(groups) => j1939::check(protocol, groups, long, &mut announced, diagnostics),
                 Standard::Isotp(_) => isotp::check(protocol, long, &mut heads, diagnostics),
             }
         }

@@ -1,25 +1,41 @@
 //! What J1939 asks of its messages: an announcement shows only the number of a group.
 
+use std::collections::HashMap;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{FrameLayout, Groups, LongMessage, Protocol};
+use crate::model::{FrameLayout, Groups, LongMessage, Protocol, Side};
 use crate::resolve::rules;
 
-/// Tests a message, and those of the same transport before it.
-pub fn check(
+/// The messages of a transport, by what an announcement shows: who sends it, and the number of the group. Each has the
+/// first one, with its place among them.
+#[derive(Default)]
+pub struct Announced<'a> {
+    count: usize,
+    first: HashMap<(Side, u32), (usize, &'a LongMessage)>,
+}
+
+/// Tests a message, and those of the same transport before it, which are announced so.
+pub fn check<'a>(
     protocol: &Protocol,
     groups: &Groups,
-    long: &LongMessage,
-    earlier: &[&LongMessage],
+    long: &'a LongMessage,
+    earlier: &mut Announced<'a>,
     diagnostics: &mut Diagnostics,
 ) {
     if long.frames.iter().any(|frame| frame.payload().next().is_some()) {
         diagnostics.push(chosen_by_data(long));
     }
+    let shown: Vec<_> = long.frames.iter().map(|frame| shown(protocol, groups, frame)).collect();
+    let alike = shown.iter().filter_map(|shown| earlier.first.get(shown)).min_by_key(|(place, _)| *place);
     if is_nameless(groups, long) {
         diagnostics.push(nameless(long));
-    } else if let Some(other) = earlier.iter().find(|other| are_alike(protocol, groups, long, other)) {
-        diagnostics.push(alike(long, other));
+    } else if let Some((_, other)) = alike {
+        diagnostics.push(self::alike(long, other));
     }
+    for shown in shown {
+        earlier.first.entry(shown).or_insert((earlier.count, long));
+    }
+    earlier.count += 1;
 }
 
 fn chosen_by_data(long: &LongMessage) -> Diagnostic {
@@ -48,12 +64,8 @@ fn alike(long: &LongMessage, other: &LongMessage) -> Diagnostic {
         .help("let their `match` differ in a field of `group`")
 }
 
-/// Tests whether an announcement can be of either message.
-fn are_alike(protocol: &Protocol, groups: &Groups, one: &LongMessage, other: &LongMessage) -> bool {
-    let group = |frame: &FrameLayout| {
-        let id =
-            frame.identifier().fold(protocol.identifier.value, |id, (field, value)| protocol[field].put(id, value));
-        (frame.sender, groups.group_of(protocol, id))
-    };
-    one.frames.iter().any(|frame| other.frames.iter().any(|known| group(frame) == group(known)))
+/// Returns what an announcement shows of a frame.
+fn shown(protocol: &Protocol, groups: &Groups, frame: &FrameLayout) -> (Side, u32) {
+    let id = frame.identifier().fold(protocol.identifier.value, |id, (field, value)| protocol[field].put(id, value));
+    (frame.sender, groups.group_of(protocol, id))
 }
