@@ -1,7 +1,10 @@
 //! The plan of recognition as rows of a `match`: what a frame must show, and its meaning then.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::hash::Hash;
+
+use indexmap::IndexMap;
 
 use crate::model::{Choice, Course, FrameId, Protocol, SelectorId};
 
@@ -50,10 +53,11 @@ fn all_lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
 
 /// Returns the lengths of frames by their constants in the identifier, unless fewer constants say the same.
 pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
-    let mut measured: Vec<Row<Vec<u8>>> = Vec::new();
+    let (mut measured, mut known): (Vec<Row<Vec<u8>>>, _) = (Vec::new(), Known::default());
     for row in all_lengths(protocol, course).into_iter().rev() {
-        let less = measured.iter().rfind(|less| implies(&row.constants, &less.constants));
-        if less.is_none_or(|less| less.outcome != row.outcome) {
+        let less = known.last_implied_by(&row.constants);
+        if less.is_none_or(|less| measured[less].outcome != row.outcome) {
+            known.add(&row.constants, measured.len());
             measured.push(row);
         }
     }
@@ -71,17 +75,51 @@ pub struct Arm<T> {
 }
 
 /// Joins rows with the same outcome, unless a row between them can hold for the same frame.
-pub fn joined<T: PartialEq>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
-    let mut joined: Vec<Arm<T>> = Vec::new();
+pub fn joined<T: Clone + Eq + Hash>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
+    let mut joined: Vec<(Arm<T>, Known)> = Vec::new();
+    let mut last: HashMap<T, usize> = HashMap::new();
     for row in rows {
-        let is_apart = |other: &Arm<T>| !other.sets.iter().any(|set| agree(set, &row.constants));
-        let same = joined.iter().rposition(|other| other.outcome == row.outcome);
-        match same.filter(|same| joined[same + 1..].iter().all(is_apart)) {
-            Some(same) => joined[same].sets.push(row.constants),
-            None => joined.push(Arm { sets: vec![row.constants], outcome: row.outcome }),
-        }
+        let is_apart = |(_, other): &(Arm<T>, Known)| !other.agrees_with(&row.constants);
+        let same = last.get(&row.outcome).copied().filter(|same| joined[same + 1..].iter().all(is_apart));
+        let place = same.unwrap_or_else(|| {
+            last.insert(row.outcome.clone(), joined.len());
+            joined.push((Arm { sets: Vec::new(), outcome: row.outcome }, Known::default()));
+            joined.len() - 1
+        });
+        let (arm, known) = &mut joined[place];
+        known.add(&row.constants, place);
+        arm.sets.push(row.constants);
     }
-    joined
+    joined.into_iter().map(|(arm, _)| arm).collect()
+}
+
+/// Sets of constants, each with the place where it was found last. Those with the same selectors are found by their
+/// values, however many there are.
+#[derive(Default)]
+struct Known(IndexMap<Vec<SelectorId>, HashMap<Constants, usize>>);
+
+impl Known {
+    fn add(&mut self, set: &Constants, place: usize) {
+        self.0.entry(set.keys().copied().collect()).or_default().insert(set.clone(), place);
+    }
+
+    /// Returns the last place of a set that a frame has which has another set.
+    fn last_implied_by(&self, set: &Constants) -> Option<usize> {
+        self.0.iter().filter_map(|(selectors, sets)| sets.get(&part(set, selectors)?)).max().copied()
+    }
+
+    /// Tests whether a frame can show a set and one of these.
+    fn agrees_with(&self, set: &Constants) -> bool {
+        self.0.iter().any(|(selectors, sets)| match part(set, selectors) {
+            Some(part) => sets.contains_key(&part),
+            None => sets.keys().any(|known| agree(known, set)),
+        })
+    }
+}
+
+/// Returns the part of a set that has some selectors, if it has all of them.
+fn part(set: &Constants, selectors: &[SelectorId]) -> Option<Constants> {
+    selectors.iter().map(|selector| Some((*selector, *set.get(selector)?))).collect()
 }
 
 /// Makes a row from the constants that frames have in the selectors that lead to them. `shown` has the values of these.
@@ -104,11 +142,6 @@ fn in_order<T>(rows: impl Iterator<Item = Row<T>>) -> Vec<Row<T>> {
     once.into_values().collect()
 }
 
-/// Tests whether every frame with the first set of constants also has the other.
-fn implies(set: &Constants, other: &Constants) -> bool {
-    other.iter().all(|(selector, value)| set.get(selector) == Some(value))
-}
-
 /// Tests whether a frame can show both sets.
 fn agree(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector).is_none_or(|known| known == value))
@@ -123,11 +156,52 @@ mod tests {
         constants.into_iter().map(|(selector, value)| (SelectorId::new(selector), value)).collect()
     }
 
+    fn known<const N: usize>(sets: [&Constants; N]) -> Known {
+        let mut known = Known::default();
+        sets.into_iter().enumerate().for_each(|(place, set)| known.add(set, place));
+        known
+    }
+
+    fn row(constants: &Constants, outcome: char) -> Row<char> {
+        Row { constants: constants.clone(), outcome, own: None }
+    }
+
     #[test]
     fn a_set_implies_what_it_contains_and_agrees_with_other_selectors() {
-        let (large, small, other) = (set([(0, 1), (1, 5)]), set([(1, 5)]), set([(1, 6), (2, 0)]));
-        assert!(implies(&large, &small) && !implies(&small, &large));
-        assert!(agree(&large, &small) && agree(&small, &large));
-        assert!(!agree(&large, &other) && agree(&set([(0, 1)]), &other));
+        let (large, small, first) = (set([(0, 1), (1, 5)]), set([(1, 5)]), set([(0, 1)]));
+        let (other, six) = (set([(1, 6), (2, 0)]), set([(1, 6)]));
+        let implied = |one, other| known([one]).last_implied_by(other);
+        assert_eq!([implied(&small, &large), implied(&large, &small)], [Some(0), None]);
+        let agrees = |one, other| known([one]).agrees_with(other);
+        assert!(agrees(&large, &small) && agrees(&small, &large));
+        assert!(!agrees(&large, &other) && !agrees(&other, &large) && agrees(&first, &other));
+        assert!(agrees(&small, &small) && !agrees(&small, &six));
+    }
+
+    #[test]
+    fn the_last_of_several_implied_sets_counts() {
+        let (large, small, first) = (set([(0, 1), (1, 5)]), set([(1, 5)]), set([(0, 1)]));
+        assert_eq!(known([&small, &first, &set([(0, 2)])]).last_implied_by(&large), Some(1));
+        assert_eq!(known([&first, &small, &set([(1, 6)])]).last_implied_by(&large), Some(1));
+        assert_eq!(known([&first, &small, &first]).last_implied_by(&large), Some(2));
+    }
+
+    #[test]
+    fn rows_with_the_same_outcome_are_joined_unless_a_frame_can_show_one_between_them() {
+        let sets = [set([(0, 1)]), set([(0, 2)]), set([(1, 5)]), set([(0, 3)])];
+        let arms = |outcomes: &str| {
+            let rows = sets.iter().zip(outcomes.chars()).map(|(set, outcome)| row(set, outcome));
+            let arms = joined(rows.collect()).into_iter();
+            let arms = arms.map(|arm| {
+                (arm.outcome, arm.sets.iter().filter_map(|set| sets.iter().position(|known| known == set)).collect())
+            });
+            arms.collect::<Vec<(char, Vec<usize>)>>()
+        };
+        assert_eq!(arms("aab"), [('a', vec![0, 1]), ('b', vec![2])]);
+        assert_eq!(arms("aba"), [('a', vec![0]), ('b', vec![1]), ('a', vec![2])]);
+        assert_eq!(arms("abba"), [('a', vec![0]), ('b', vec![1, 2]), ('a', vec![3])]);
+        assert_eq!(arms("abca"), [('a', vec![0]), ('b', vec![1]), ('c', vec![2]), ('a', vec![3])]);
+        let apart = [row(&sets[0], 'a'), row(&sets[1], 'b'), row(&sets[3], 'a')];
+        assert_eq!(joined(apart.into()).len(), 2);
     }
 }
