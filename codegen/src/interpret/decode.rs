@@ -274,6 +274,22 @@ impl<'a> Decoder<'a, '_> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
+    /// Shows the values of the selectors in the data. Bits that several of them have are shown once.
+    fn payload_selectors(&self, scope: &Scope) -> String {
+        let mut selectors = self.selectors(&scope.selectors);
+        selectors.retain(|(id, _)| scope.choosing.contains(id));
+        let mask = |id: SelectorId| match self.protocol[id].place {
+            SelectorPlace::Payload(place) => u64::from_be_bytes(place.mask()),
+            SelectorPlace::Identifier(_) => 0,
+        };
+        let is_shown = |index: usize, own: u64| {
+            let mut others = selectors.iter().enumerate().map(|(other, (id, _))| (other, mask(*id)));
+            others.any(|(other, known)| own & !known == 0 && (own != known || other < index))
+        };
+        let shown = selectors.iter().enumerate().filter(|(index, (id, _))| !is_shown(*index, mask(*id)));
+        shown.map(|(_, known)| self.selector_text(*known)).collect::<Vec<_>>().join(", ")
+    }
+
     fn by_length(&self, group: &'a Group) -> Result<&'a Scope, Unrecognised> {
         let length = self.frame.data.len();
         group.of_length(length).ok_or_else(|| {
@@ -306,10 +322,7 @@ impl<'a> Decoder<'a, '_> {
             _ => self.candidates(frames).min_by_key(|candidate| self.rank(candidate)),
         };
         best.map(|best| (best, frames)).ok_or_else(|| {
-            let mut selectors = self.selectors(&of_length.selectors);
-            selectors.retain(|(id, _)| of_length.choosing.contains(id));
-            let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
-            let text = format!("no {} has {}", kinds(of_length), shown.join(", "));
+            let text = format!("no {} has {}", kinds(of_length), self.payload_selectors(of_length));
             self.unrecognised(Problem::UnknownMessage, text, true, Some(of_length))
         })
     }

@@ -31,6 +31,31 @@ fn numbers_are_scaled_and_keep_their_sign() {
     assert_eq!(values(&feature("short_frames"), "283#0000FAFFFEFF"), expected);
 }
 
+/// Constants that different messages call differently share byte 0.
+const CALLED_TWICE: &str = r#"
+canspec: 1
+protocol: called_twice
+title: A battery
+document: {title: Made up, version: "1"}
+length: 4
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+addressing: {battery: {request: {sender: 0}, one: {sender: 1}}}
+access: {report: {report: {}, answers: {battery: one}}}
+messages:
+  one:   {section: "1", match: {command: 2}, access: [report], fields: {kind: {bytes: 0, const: 1}, level: {bytes: 2}}}
+  two:   {section: "1", match: {command: 2}, access: [report], fields: {sort: {bytes: 0, const: 2}, level: {bytes: 2}}}
+  three: {section: "1", match: {command: 3}, access: [report], fields: {kind: {bytes: 0, const: 1}, level: {bytes: 2}}}
+  four:  {section: "1", match: {command: 3}, access: [report], fields: {both: {bytes: 0..1, const: 0x0302}}}
+"#;
+
+#[test]
+fn a_byte_that_chooses_no_message_is_named_once() {
+    let battery = written(CALLED_TWICE);
+    let text = |frame_text| decode(&battery, None, &frame(frame_text)).expect_err("no message has it").text;
+    assert_eq!(text("005#04000000"), "no report has kind 0x04");
+    assert_eq!(text("007#04000000"), "no report has both 0x0400");
+}
+
 #[test]
 fn a_special_value_is_read_as_its_name() {
     let values = values(&feature("little_endian"), "083#73AA0EFF28230311");
