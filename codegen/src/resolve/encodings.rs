@@ -59,18 +59,21 @@ impl Resolver<'_> {
     }
 
     fn float(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
-        let at = merged.sources[0].key("as").at_value();
         if place.width() != 32 {
+            let at = merged.sources[0].key("as").at_value();
             let text = format!("a float has 32 bits, the place of `{name}` has {}", place.width());
             self.error_with_help(&rules::TYPE, at, text, "give the field four bytes, or take `as: float` out");
             return None;
         }
-        if merged.field.scale.is_some() || merged.field.offset.is_some() {
-            let message = format!("`{name}` is a float, which is neither scaled nor offset");
-            self.error_with_help(&rules::TYPE, at, message, "take `scale` and `offset` out, or `as: float`");
-            return None;
-        }
-        Some(Encoding::Float)
+        let linear = [(Key::Scale, &merged.field.scale), (Key::Offset, &merged.field.offset)];
+        let Some((key, _)) = linear.into_iter().find(|(_, written)| written.is_some()) else {
+            return Some(Encoding::Float);
+        };
+        // A type says it once for all of its fields.
+        let at = merged.path(self.diagnostics, key).at_key();
+        let message = "a float is neither scaled nor offset".to_owned();
+        self.error_with_help(&rules::TYPE, at, message, "take `scale` and `offset` out, or `as: float`");
+        None
     }
 
     fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {

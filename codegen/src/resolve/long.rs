@@ -118,8 +118,9 @@ impl Resolver<'_> {
     /// Refuses constants, since no frame of the message would show them.
     fn refuse_constants(&mut self, leaves: &Leaves) {
         for (constant, _) in &leaves.constants {
-            let what = ("a constant", "take it out; what chooses the frames stands in `match`");
-            self.refuse_in_long(&constant.doc.path, what);
+            let help = "`match` chooses the frames; if the code of a maker stands here, name it in `values` instead, and \
+                        any other gets the note `unknown_value`";
+            self.refuse_in_long(&constant.doc.path, ("a constant", help));
         }
     }
 
