@@ -1,6 +1,6 @@
 //! Limits of a product that is narrower than its devices.
 
-use winch_driver::supply::{Model, Quantities, Quantity, SetOutput, Target};
+use winch_driver::supply::{Model, Quantities, Quantity, SetOutput, SetTrim, SetTrimBatch, Target};
 
 #[test]
 fn no_model_takes_more_than_the_product() {
@@ -28,4 +28,27 @@ fn a_number_without_a_range_keeps_to_the_limit_of_the_product() {
         winch_driver::supply::Message::set(&values, Target::Supply).is_ok()
     };
     assert_eq!([30_000, 29_600, 30_400, 30_600].map(set), [true, true, false, false]);
+}
+
+#[test]
+fn a_step_beyond_a_limit_is_refused_though_both_are_the_same_double() {
+    let batch = SetTrimBatch { number: 7 };
+    let takes = |gain| SetTrim { gain, drift: 1.0, batch }.set(Target::Supply).is_ok();
+    assert_eq!([0.0, 0.125, 0.25, 0.875, 1.0].map(takes), [false, false, true, true, false]);
+}
+
+#[test]
+fn a_float_may_be_as_near_to_a_limit_as_it_can() {
+    let batch = SetTrimBatch { number: 7 };
+    let takes = |drift: f32| SetTrim { gain: 0.25, drift, batch }.set(Target::Supply).is_ok();
+    assert_eq!([0.7_f32.next_down(), 0.7, 1.1, 1.1_f32.next_up()].map(takes), [false, true, true, false]);
+    assert_eq!([f32::NAN, f32::INFINITY].map(takes), [false; 2]);
+}
+
+#[test]
+fn a_part_of_a_text_keeps_to_the_numbers_between_its_limits() {
+    let text = |number| SetTrimBatch { number }.text().map(|text| text.to_string());
+    assert_eq!([0, 1, 99, 100].map(text), [None, Some("B1".to_owned()), Some("B99".to_owned()), None]);
+    let read = |text| SetTrimBatch::parse(text).map(|batch| batch.number);
+    assert_eq!(["B0", "B1", "B99", "B100"].map(read), [None, Some(1), Some(99), None]);
 }
