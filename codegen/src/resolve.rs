@@ -104,8 +104,8 @@ struct Tables {
     /// Types that a field names.
     used_types: HashSet<String>,
     models: Table<ModelId, model::DeviceModel>,
-    /// Number of limits that device models set to fields so far.
-    limits_of_models: usize,
+    /// How often device models change fields so far.
+    changes_by_models: usize,
     transports: Table<TransportId, model::Transport>,
     long_messages: Table<LongMessageId, model::LongMessage>,
     long_examples: Vec<model::LongExample>,

@@ -57,6 +57,9 @@ impl Resolver<'_> {
         let is_general = merged.field.scale.is_some() || merged.field.offset.is_some();
         let Encoding::Number { numeral, scale, offset } = signal.encoding else { return None };
         let step = (is_general || self.has_scale(merged, model)).then(|| self.step_of_model(merged, model))?;
+        if !self.may_change(merged) {
+            return None;
+        }
         let encoding =
             Encoding::Number { numeral, scale: step.scale.unwrap_or(scale), offset: step.offset.unwrap_or(offset) };
         let unit = step.unit.or(signal.unit);

@@ -13,8 +13,8 @@ use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::Path;
 use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
-/// Most limits of device models in a spec, each counted for each field that has it.
-const MOST_LIMITS: usize = 1 << 16;
+/// Most fields that device models change in a spec, each counted for each model.
+const MOST_CHANGES: usize = 1 << 16;
 
 /// What a device model can change of a type.
 const OF_MODELS: [Key; 5] = [Key::Range, Key::Default, Key::Scale, Key::Offset, Key::Unit];
@@ -140,29 +140,28 @@ impl Resolver<'_> {
     /// Adds the limits and defaults of device models that replace those of the signal's types.
     fn limit_by_models(&mut self, merged: &Merged, signal: &mut Signal) {
         for model in self.tables.models.ids() {
-            if self.tables.limits_of_models > MOST_LIMITS {
+            let (range, default) = (self.range_of_model(merged, model), self.default_of_model(merged, model));
+            if (range.is_some() || default.is_some()) && !self.may_change(merged) {
                 return;
             }
-            if let Some((path, value)) = self.range_of_model(merged, model) {
-                self.count_limit(merged);
-                signal.model_ranges.push(OfModel { model, value, path });
-            }
-            if let Some((path, text)) = self.default_of_model(merged, model) {
+            signal.model_ranges.extend(range.map(|(path, value)| OfModel { model, value, path }));
+            if let Some((path, text)) = default {
                 let raw = self.default(&path, signal, &text);
                 signal.model_defaults.extend(raw.map(|value| OfModel { model, value, path }));
             }
         }
     }
 
-    /// Counts a limit of a device model, and refuses the first one beyond the most.
-    fn count_limit(&mut self, merged: &Merged) {
-        self.tables.limits_of_models += 1;
-        if self.tables.limits_of_models == MOST_LIMITS + 1 {
-            let text = format!("fields have more than {MOST_LIMITS} limits of device models from here on");
+    /// Counts a field that a device model changes, and refuses the first one beyond the most. Returns whether it may.
+    pub fn may_change(&mut self, merged: &Merged) -> bool {
+        self.tables.changes_by_models += 1;
+        if self.tables.changes_by_models == MOST_CHANGES + 1 {
+            let text = format!("device models change fields more than {MOST_CHANGES} times from here on");
             let help =
-                "each field counts once for each model that limits its type; write a spec for some of the models";
+                "each field counts once for each model that changes its type; write a spec for some of the models";
             self.error_with_help(&rules::MODEL_RANGE, merged.sources[0].at_key(), text, help);
         }
+        self.tables.changes_by_models <= MOST_CHANGES
     }
 
     /// Returns the limits that a device model has of its own, and their place.

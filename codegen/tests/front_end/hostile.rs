@@ -114,8 +114,60 @@ fn limits_of_very_many_models_on_very_many_fields_are_refused() {
     let found = compile(source(&spec)).diagnostics.concise();
     let found: Vec<_> = found.lines().filter(|line| line.contains("error[model_range]")).collect();
     // 256 models limit 256 fields each. Seven lines stand above, then `types`, `models` and 256 of them, and `messages`.
-    let text = "fields have more than 65536 limits of device models from here on";
+    let text = "device models change fields more than 65536 times from here on";
     assert_eq!(found, [format!("mini.yaml:523:35: error[model_range]: {text}")]);
+}
+
+#[test]
+fn defaults_and_scales_of_very_many_models_on_very_many_fields_are_refused() {
+    let fields = lines(258, |number| {
+        format!("  m{number}: {{access: [read], fields: {{first: {{bytes: 0..1, type: volts}}}}}}\n")
+    });
+    for change in ["default: 1", "scale: 1/10"] {
+        let models = lines(256, |number| format!("  M{number}: {{types: {{volts: {{{change}}}}}}}\n"));
+        let spec = format!("{WHOLE}types: {{volts: {{unit: V}}}}\nmodels:\n{models}messages:\n{fields}");
+        let found = compile(source(&spec)).diagnostics.concise();
+        let found: Vec<_> = found.lines().filter(|line| line.contains("error[model_range]")).collect();
+        let text = "device models change fields more than 65536 times from here on";
+        assert_eq!(found, [format!("mini.yaml:523:35: error[model_range]: {text}")], "{change}");
+    }
+}
+
+/// A spec whose messages are reports.
+const TOLD: &str = "\
+canspec: 1
+protocol: mini
+title: Mini
+document: {title: Mini CAN, version: V1}
+length: 8
+identifier: {command: {bits: 10..0}}
+addressing: {all: {one: {}}}
+access: {tell: {report: {}, answers: {all: one}}}
+";
+
+/// What only the first of 256 models has. In 257 fields the others lack it 65,535 times.
+const PARTIAL: [&str; 3] = [
+    "{bytes: 0..1, models: [M0]}",
+    "{bytes: 0, status: {low: {bit: 0, models: [M0]}}}",
+    "{bytes: 0, values: {0: idle, 1: {name: full, models: [M0]}}}",
+];
+
+#[test]
+fn what_very_many_models_lack_of_very_many_fields_is_refused() {
+    let models = lines(256, |number| format!("  M{number}: {{section: \"1\"}}\n"));
+    for field in PARTIAL {
+        let refused = |count| {
+            let fields = lines(count, |number| {
+                format!("  m{number}: {{match: {{command: {number}}}, access: [tell], fields: {{first: {field}}}}}\n")
+            });
+            let spec = format!("{TOLD}models:\n{models}messages:\n{fields}");
+            let found = compile(source(&spec)).diagnostics.concise();
+            found.lines().filter(|line| line.contains("error")).map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(refused(257), [""; 0], "{field}");
+        let text = "device models lack more than 65536 fields, bits and named values from here on";
+        assert_eq!(refused(258), [format!("mini.yaml:524:58: error[model_range]: {text}")], "{field}");
+    }
 }
 
 #[test]
