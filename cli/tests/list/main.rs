@@ -46,3 +46,14 @@ fn protocol(spec: &Path) -> Protocol {
     let outcome = compile(bases.read(spec).expect("it can be read"));
     outcome.protocol.unwrap_or_else(|| panic!("{}: {}", spec.display(), outcome.diagnostics.concise()))
 }
+
+#[test]
+fn what_an_output_does_after_silence_is_listed() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features/times.yaml");
+    let text = list(&spec, &[]);
+    assert!(text.contains("AFTER SILENCE") && text.contains("The output goes off, and stays off until"), "{text}");
+    assert!(text.contains("note: an erased device is off"), "{text}");
+    let listed = object(&spec);
+    let [output, section] = ["output", "section"].map(|key| &listed["after_silence"][key]);
+    assert_eq!([output, section], ["off", "4"]);
+}

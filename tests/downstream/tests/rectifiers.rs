@@ -1,7 +1,9 @@
 //! Scales and offsets that depend on the device model.
 
+use canspec_runtime::{AfterSilence, Protocol};
 use winch_driver::rectifier::embedded_can::{Frame as _, StandardId};
 use winch_driver::rectifier::{Error, Frame, Message, Model, Received, SetCharge, SetOutput, SetService, Target};
+use winch_driver::winch;
 
 fn received(id: u16, data: &[u8], model: Model) -> Received {
     let id = StandardId::new(id).expect("eleven bits");
@@ -13,6 +15,12 @@ fn shown(received: &Received) -> Vec<String> {
     let mut shown = Vec::new();
     received.visit(|reading| shown.push(reading.to_string()));
     shown
+}
+
+#[test]
+fn a_protocol_says_what_devices_do_after_silence() {
+    assert_eq!(Message::AFTER_SILENCE, AfterSilence::Starts);
+    assert_eq!(winch::Message::AFTER_SILENCE, AfterSilence::Unknown, "its spec does not say it");
 }
 
 #[test]
