@@ -10,9 +10,28 @@ use alloc::vec::Vec;
 use core::time::Duration;
 
 use canspec_runtime::client::{Output, Pace};
+use canspec_runtime::clock::has_come;
 use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
 use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received, Time, Timing};
 use canspec_station::{Settings, Station};
+
+/// What a module sends by itself.
+#[derive(Clone, Copy)]
+pub struct Reports<P: Addressed> {
+    /// Builds one of the frames that are due together, from the number of the module and their own from 0 on.
+    pub build: fn(u8, u8, &Charger<P>) -> Option<Frame>,
+    /// The milliseconds from one time to the next.
+    pub interval: u32,
+    /// When they are due next, and how many were sent since they were due.
+    due: u32,
+    sent: u8,
+}
+
+impl<P: Addressed> Reports<P> {
+    pub fn new(build: fn(u8, u8, &Charger<P>) -> Option<Frame>, interval: u32) -> Self {
+        Self { build, interval, due: 0, sent: 0 }
+    }
+}
 
 /// A module of any protocol: it keeps what is set, and tells it.
 #[derive(Clone, Copy)]
@@ -33,12 +52,19 @@ pub struct Charger<P: Addressed> {
     pub steepest_ma: i32,
     /// When it started last.
     pub started: u32,
+    pub reports: Option<Reports<P>>,
 }
 
 impl<P: Addressed> Charger<P> {
     pub fn new(group: (u8, P::Target), tell: fn(&Received<P>, &Self) -> Option<P>) -> Self {
         let (voltage_mv, current_ma, is_on, was_bare) = (None, None, false, false);
-        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on: 0, steepest_ma: 0, started: 0 }
+        let (switched_on, steepest_ma, started, reports) = (0, 0, 0, None);
+        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on, steepest_ma, started, reports }
+    }
+
+    /// Lets the module send something by itself.
+    pub fn reporting(self, reports: Reports<P>) -> Self {
+        Self { reports: Some(reports), ..self }
     }
 
     pub fn volts(&self) -> f32 {
@@ -80,6 +106,17 @@ where
 
     fn is_asked(&self, request: &Received<P>) -> bool {
         request.target() == Some(self.group.1)
+    }
+
+    fn report(&mut self, node: u8, now: u32) -> Option<Frame> {
+        let mut reports = self.reports.filter(|reports| has_come(reports.due, now))?;
+        let frame = (reports.build)(node, reports.sent, self);
+        (reports.due, reports.sent) = match frame {
+            Some(_) => (reports.due, reports.sent + 1),
+            None => (now.wrapping_add(reports.interval), 0),
+        };
+        self.reports = Some(reports);
+        frame
     }
 
     fn silence(&mut self, _now: u32) {
