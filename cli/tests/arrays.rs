@@ -1,7 +1,6 @@
 //! Arrays are one cell of a table and one member of an object, and such objects encode again.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
+mod calls;
 
 const SPEC: &str = r#"
 canspec: 1
@@ -31,16 +30,7 @@ fn canspec(arguments: &[&str], input: &str) -> (String, String) {
     let folder = tempfile::tempdir().expect("there is room");
     let spec = folder.path().join("pack.yaml");
     std::fs::write(&spec, SPEC).expect("there is room");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
-    let command = command.args(arguments).arg("--spec").arg(&spec).stdin(Stdio::piped());
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let mut child = child.expect("canspec runs");
-    let mut stdin = child.stdin.take().expect("it reads");
-    stdin.write_all(input.as_bytes()).expect("it reads");
-    drop(stdin);
-    let output = child.wait_with_output().expect("canspec ends");
-    let [out, complaints] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
-    (out, complaints)
+    calls::canspec(&spec, arguments, input)
 }
 
 /// Returns the signals of the only object.

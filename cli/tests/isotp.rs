@@ -1,8 +1,8 @@
 //! Messages by ISO-TP: the table shows one row for each, and both ways back give the frames.
 
-use std::io::Write;
+mod calls;
+
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
@@ -17,16 +17,7 @@ const READING: &str = "\
 
 fn canspec(arguments: &[&str], input: &str) -> (String, String) {
     let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/devices/units.yaml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
-    let command = command.args(arguments).arg("--spec").arg(spec).stdin(Stdio::piped());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
-    let mut stdin = child.stdin.take().expect("it reads");
-    // A call that is refused does not read.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    let output = child.wait_with_output().expect("canspec ends");
-    let [out, complaints] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
-    (out, complaints)
+    calls::canspec(&spec, arguments, input)
 }
 
 /// Decodes frames of unit 0 and of the tester, and returns the joined messages.

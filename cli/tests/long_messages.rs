@@ -1,7 +1,8 @@
 //! Messages in parts: the table shows one row for each, JSON lines add an object, and both ways back give the frames.
 
+mod calls;
+
 use std::fs::{self, File};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -46,16 +47,7 @@ fn canspec(arguments: &[&str], input: &str) -> (String, String) {
 }
 
 fn canspec_with(name: &str, arguments: &[&str], input: &str) -> (String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
-    let command = command.args(arguments).arg("--spec").arg(spec(name)).stdin(Stdio::piped());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
-    let mut stdin = child.stdin.take().expect("it reads");
-    // A call that is refused does not read.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    let output = child.wait_with_output().expect("canspec ends");
-    let [out, complaints] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
-    (out, complaints)
+    calls::canspec(&spec(name), arguments, input)
 }
 
 fn objects(log: &str) -> Vec<Value> {

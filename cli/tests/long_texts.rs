@@ -1,8 +1,8 @@
 //! Texts of more than eight bytes: the table shows them, JSON lines have their bytes, and both ways back give the frames.
 
-use std::io::Write;
+mod calls;
+
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
@@ -34,15 +34,7 @@ fn canspec(arguments: &[&str], input: &str) -> [String; 2] {
 fn canspec_by(spec: &str, arguments: &[&str], input: &str) -> [String; 2] {
     let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features");
     let spec = specs.join(spec).with_extension("yaml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
-    let command = command.args(arguments).arg("--spec").arg(spec).stdin(Stdio::piped());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
-    let mut stdin = child.stdin.take().expect("it reads");
-    // A call that is refused does not read.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    let output = child.wait_with_output().expect("canspec ends");
-    [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"))
+    calls::canspec(&spec, arguments, input).into()
 }
 
 /// Returns the objects of whole messages.

@@ -1,8 +1,8 @@
 //! Fields that only some device models have: they are hidden on the others, and asked for where a model has them.
 
-use std::io::Write;
+mod calls;
+
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// Three bytes reach `warmth`, which `V1_2` does not have.
 const LOG: &str = "\
@@ -13,16 +13,7 @@ const LOG: &str = "\
 
 fn canspec(arguments: &[&str], input: &str) -> (String, String) {
     let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features/revisions.yaml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
-    let command = command.args(arguments).arg("--spec").arg(spec).stdin(Stdio::piped());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
-    let mut stdin = child.stdin.take().expect("it reads");
-    // A call that is refused does not read.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    let output = child.wait_with_output().expect("canspec ends");
-    let [out, complaints] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
-    (out, complaints)
+    calls::canspec(&spec, arguments, input)
 }
 
 #[test]
