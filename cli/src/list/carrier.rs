@@ -1,6 +1,6 @@
 //! How a long message travels: in numbered parts, or by a transport.
 
-use canspec_codegen::model::{Carrier, LongMessage, Parts, Protocol};
+use canspec_codegen::model::{Carrier, LongMessage, Parts, Protocol, WrittenPlace};
 
 /// Says how many bytes or parts it has.
 pub fn text(protocol: &Protocol, long: &LongMessage) -> String {
@@ -26,6 +26,24 @@ fn parts(protocol: &Protocol, long: &LongMessage, parts: &Parts) -> String {
     let firsts: Vec<_> = parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
     let (least, most) = (long.parts_of(long.shortest()), long.parts_of(long.longest()));
     let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    let silence = parts.silence.map_or_else(String::new, |time| format!(", until `{}`", protocol.timing[time].name));
-    format!("in {count} parts of {} bytes, numbered from {}{silence}", parts.size, firsts.join(" or "))
+    let numbers = format!("in {count} parts of {} bytes, numbered from {}", parts.size, firsts.join(" or "));
+    [Some(numbers), length(parts), elements(protocol, parts), silence(protocol, parts)].into_iter().flatten().collect()
+}
+
+/// Says where the first part has the number of bytes.
+fn length(parts: &Parts) -> Option<String> {
+    let length = parts.length?;
+    let bytes = if length.bytes() == 1 { "byte" } else { "bytes" };
+    Some(format!(", length in {bytes} {} of the first part", WrittenPlace::of(length.place)))
+}
+
+/// Says which field has the number of elements.
+fn elements(protocol: &Protocol, parts: &Parts) -> Option<String> {
+    let (message, signal) = parts.count?;
+    let message = &protocol[message];
+    Some(format!(", as many elements as `{}.{}` says", message.name, message[signal].name))
+}
+
+fn silence(protocol: &Protocol, parts: &Parts) -> Option<String> {
+    parts.silence.map(|time| format!(", until `{}`", protocol.timing[time].name))
 }

@@ -53,6 +53,19 @@ fn a_message_alone_has_its_notes_and_the_errata_that_it_names() {
     }
 }
 
+#[test]
+fn a_message_in_parts_shows_what_says_how_much_comes() {
+    for (spec, message, shown) in [
+        ("fast_packets", "engine", "length in byte 1 of the first part"),
+        ("parts", "cells", "as many elements as `state.cells` says"),
+        ("parts_until_silence", "trips", "until `pause`"),
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../tests/specs/features/{spec}.yaml"));
+        let listed = without_blanks(&list(&path, &["--message", message]));
+        assert!(listed.contains(&without_blanks(shown)), "{spec}: {listed}");
+    }
+}
+
 fn without_blanks(text: &str) -> String {
     text.split_whitespace().collect()
 }
