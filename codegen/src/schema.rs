@@ -12,7 +12,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
 use crate::syntax::ast::{
-    ByModel, DescribedValue, Field, Map, Means, NamedValue, Names, Numbers, SignalPath, Spec, States, Words,
+    ByModel, DescribedValue, Elements, Field, Map, Means, NamedValue, Names, Numbers, PartData, SignalPath, Spec,
+    States, Words,
 };
 
 /// Returns the schema as indented text that ends in a line feed.
@@ -161,6 +162,21 @@ impl JsonSchema for ByModel {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (number, each) = (generator.subschema_for::<String>(), generator.subschema_for::<Map<String>>());
         json_schema!({ "anyOf": [number, each] })
+    }
+}
+
+impl JsonSchema for PartData {
+    fn schema_name() -> Cow<'static, str> {
+        "PartData".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (place, elements) = (generator.subschema_for::<String>(), generator.subschema_for::<Elements>());
+        json_schema!({ "anyOf": [place, elements] })
     }
 }
 

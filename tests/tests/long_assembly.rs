@@ -6,6 +6,7 @@ use canspec_codegen::interpret::{Assembled, Assembly, Form, Frame, decode};
 use canspec_codegen::model::{
     AddressPattern, FrameLayout, Kind, LongMessage, MessageId, ModelId, Protocol, SelectorPlace, SignalId,
 };
+use canspec_runtime::Place;
 use canspec_runtime::parts::{Assembler, Outcome, Parted};
 use canspec_tests::long::{is_same, long, member};
 use canspec_tests::{Optional, PartedVisitor, models, number, protocol, received, visit_parted};
@@ -55,8 +56,10 @@ impl Bus<'_> {
         self.begun[device] += u64::from(self.sent[device] == 0 || self.rng.u8(..32) == 0);
         let number = (self.first + self.sent[device]).saturating_sub(u64::from(self.rng.u8(..32) == 0));
         let parts = self.long.parts().expect("its frames have numbers");
-        let mut values = vec![(parts.number, number), (parts.data, self.data(number))];
-        values.extend(parts.counter.map(|counter| (counter, self.begun[device])));
+        let place = |signal: SignalId| self.protocol[self.long.message][signal].place;
+        let (at, counter) = (place(parts.number), parts.counter.map(place));
+        let mut values = vec![(at, number), (parts.data, self.data(number))];
+        values.extend(counter.map(|counter| (counter, self.begun[device])));
         self.sent_frame(self.long.message, Kind::Reply, device, &values)
             .or_else(|| self.sent_frame(self.long.message, Kind::Report, device, &values))
             .expect("modules send parts")
@@ -70,10 +73,9 @@ impl Bus<'_> {
         let lengths: Vec<_> = (0..=self.long.longest()).filter(|length| self.long.has_length(*length)).collect();
         let said = u64::try_from(*self.rng.choice(&lengths).expect("it has a length")).expect("a few bytes");
         let mut frame = [0; 8];
-        let data = self.protocol[self.long.message][parts.data].place;
-        data.put(&mut frame, any & data.max());
+        parts.data.put(&mut frame, any & parts.data.max());
         length.place.put(&mut frame, said);
-        data.get(&frame)
+        parts.data.get(&frame)
     }
 
     fn request(&mut self) -> Option<Frame> {
@@ -84,17 +86,12 @@ impl Bus<'_> {
     fn count(&mut self) -> Option<Frame> {
         let ((message, signal), device) = (self.long.parts()?.count?, self.rng.usize(..self.sent.len()));
         let value = self.rng.u64(..12);
-        self.sent_frame(message, Kind::Reply, device, &[(signal, value)])
+        let place = self.protocol[message][signal].place;
+        self.sent_frame(message, Kind::Reply, device, &[(place, value)])
     }
 
     /// Builds a frame of a device.
-    fn sent_frame(
-        &mut self,
-        message: MessageId,
-        kind: Kind,
-        device: usize,
-        values: &[(SignalId, u64)],
-    ) -> Option<Frame> {
+    fn sent_frame(&mut self, message: MessageId, kind: Kind, device: usize, values: &[(Place, u64)]) -> Option<Frame> {
         let protocol = self.protocol;
         let layout = protocol.frames_of(&protocol[message]).find(|frame| frame.kind == kind)?;
         let (_, pattern) = protocol.patterns_of(layout).next()?;
@@ -102,8 +99,7 @@ impl Bus<'_> {
         for (place, value) in layout.payload() {
             place.put(&mut data, value);
         }
-        for (signal, value) in values {
-            let place = protocol[message][*signal].place;
+        for (place, value) in values {
             place.put(&mut data, *value & place.max());
         }
         let mut id = self.identifier(layout, pattern, device);

@@ -383,7 +383,7 @@ impl Part {
             return None;
         }
         let bits = |signal| decoded.signals.iter().find(|reading| reading.signal == signal).map(|reading| reading.bits);
-        let (number, data) = (bits(parts.number)?, bits(parts.data)?);
+        let (number, data) = (bits(parts.number)?, parts.data.get(&frame.padded()));
         let index = number.checked_sub(long.first(model)?.into())?;
         let index = usize::try_from(index).ok().filter(|index| *index < long.parts_of(long.longest()))?;
         let data = data.to_be_bytes()[8 - long.size()..].to_vec();

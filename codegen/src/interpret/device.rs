@@ -81,7 +81,8 @@ pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -
         let data = typed(protocol, (long.extent(layout), header), signals, (sent.model, Limits::Bits))?;
         return frames(protocol, transport, (layout, id), &data);
     }
-    typed_frames(protocol, layout, signals, (sent.model, Limits::Bits), |signals| one(protocol, sent, layout, signals))
+    let one = |layout: &_, signals: &[_]| one(protocol, sent, layout, signals);
+    typed_frames(protocol, layout, signals, (sent.model, Limits::Bits), one)
 }
 
 /// Makes one frame that a module sends.

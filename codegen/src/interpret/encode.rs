@@ -25,11 +25,20 @@ const FORBIDDEN: [NoteRule; 2] = [NoteRule::Address, NoteRule::Addressing];
 pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, &content.message)?;
     let content = &*arrays::parted(message, content)?;
-    let id = identifier(protocol, content)?;
-    let layout = layout(protocol, message, protocol.frames_of(message), content, id)?;
+    let layout = layout(protocol, message, protocol.frames_of(message), content, identifier(protocol, content)?)?;
+    encode_as(protocol, model, (message, layout), content)
+}
+
+/// Makes a frame of a known kind.
+fn encode_as(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    (message, layout): (&Message, &FrameLayout),
+    content: &Content,
+) -> Result<Frame, Refusal> {
     let limits = Limits::of(layout, model);
     let data = payload(protocol, message, layout, content, (model, limits))?;
-    let frame = frame(protocol, id, data);
+    let frame = frame(protocol, identifier(protocol, content)?, data);
     let one_that_has_it = model.or_else(|| message.models.first().copied());
     let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
     confirm(protocol, message, layout, &decoded, model)?;
@@ -71,16 +80,14 @@ fn encode_parts(
     // Nothing says whether elements at the end are real, so what looks like filling is tested against no limits.
     let real = long::real(known, &data, &content.signals);
     long::joined(protocol, whole, &real, reserved, (model, Limits::of(layout, model)))?;
-    let mut frames = Vec::new();
+    let (mut frames, layout) = (Vec::new(), long::without_data(parts, layout));
     for (number, data) in long::parts(known, model, &data)? {
-        let mut signals = vec![
-            (message[parts.number].name.clone(), Input::Integer(number.into())),
-            (message[parts.data].name.clone(), Input::Text(data)),
-        ];
-        signals.extend(counter.clone());
-        let selectors = selectors.clone();
+        let number = (message[parts.number].name.clone(), Input::Integer(number.into()));
+        let (signals, selectors) = (counter.clone().into_iter().chain([number]).collect(), selectors.clone());
         let part = Content { signals, selectors, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
-        frames.push(encode(protocol, model, &part)?);
+        let mut frame = encode_as(protocol, model, (message, &layout), &part)?;
+        long::put_data(parts, &data, &mut frame);
+        frames.push(frame);
     }
     continue_all_but_last(protocol, &mut frames);
     Ok(frames)

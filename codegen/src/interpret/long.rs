@@ -10,7 +10,7 @@ use super::value::{Limits, bytes_of, raw_of};
 use super::{Frame, Input, Note, Reading, Refusal};
 use crate::hex;
 use crate::model::{
-    Announcement, Extent, FrameLayout, LongMessage, ModelId, NoteRule, Parts, Protocol, Signal, TextForm,
+    Announcement, Extent, FrameLayout, LongMessage, ModelId, NoteRule, Parts, Protocol, Signal, SignalId, TextForm,
 };
 
 /// What a call writes for each signal, by name.
@@ -213,8 +213,8 @@ fn length(
     lengths.find(|length| *length >= given.max(reserved)).ok_or_else(|| too_long(extent.longest()))
 }
 
-/// Returns the number of each part, and its data in hexadecimal.
-pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<Vec<(u16, String)>, Refusal> {
+/// Returns the number of each part, and its data.
+pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<Vec<(u16, Vec<u8>)>, Refusal> {
     let first = long.first(model).ok_or_else(|| {
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
@@ -223,7 +223,20 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
     if let Some(length) = long.parts().and_then(|parts| parts.length) {
         put_length(length, data.len(), &mut parts);
     }
-    Ok((first..).zip(parts.chunks(long.size()).map(hex::digits)).collect())
+    Ok((first..).zip(parts.chunks(long.size()).map(<[u8]>::to_vec)).collect())
+}
+
+/// Puts the data of a part into its frame.
+pub fn put_data(parts: &Parts, data: &[u8], frame: &mut Frame) {
+    let mut payload = frame.padded();
+    parts.data.put(&mut payload, data.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    frame.data = payload.into_iter().take(frame.data.len()).collect();
+}
+
+/// Returns the frame of a part without its data, which have no limits of their own.
+pub fn without_data(parts: &Parts, layout: &FrameLayout) -> FrameLayout {
+    let signals = parts.counter.into_iter().chain([parts.number]).collect();
+    FrameLayout { signals, ..layout.clone() }
 }
 
 /// Writes the number of data bytes before the data.
@@ -273,37 +286,56 @@ pub fn typed_frames(
     layout: &FrameLayout,
     given: &[(String, String)],
     limits: (Option<ModelId>, Limits),
-    one: impl Fn(&[(String, String)]) -> Result<Frame, Refusal>,
+    one: impl Fn(&FrameLayout, &[(String, String)]) -> Result<Frame, Refusal>,
 ) -> Result<Vec<Frame>, Refusal> {
-    let Some(parts) = typed_parts(protocol, layout, given, limits)? else { return Ok(vec![one(given)?]) };
-    let mut frames = parts.iter().map(|signals| one(signals)).collect::<Result<Vec<_>, _>>()?;
+    let long = protocol.part_of(layout).map(|id| &protocol[id]);
+    let parted = long.and_then(|long| Some((long, long.parts()?)));
+    let Some((long, parts)) = parted.filter(|known| !is_one_part(protocol, *known, layout, given)) else {
+        return Ok(vec![one(layout, given)?]);
+    };
+    let layout = without_data(parts, layout);
+    let made = |(texts, data): (Texts, Vec<u8>)| {
+        let mut frame = one(&layout, &texts)?;
+        put_data(parts, &data, &mut frame);
+        Ok(frame)
+    };
+    let typed = typed_parts(protocol, (long, parts), given, limits)?.into_iter();
+    let mut frames = typed.map(made).collect::<Result<Vec<_>, _>>()?;
     continue_all_but_last(protocol, &mut frames);
     Ok(frames)
 }
 
-/// Returns the texts for the signals of each frame, unless what is given is one frame. Signals of the whole come before
-/// those of a frame that have the same name. To a module goes the whole alone, since its limits are those of its signals.
-fn typed_parts(
+/// Tests whether what is given is one frame of a module, by a signal that only a frame has. To a module goes the whole
+/// alone, since its limits are those of its signals.
+fn is_one_part(
     protocol: &Protocol,
+    (long, parts): (&LongMessage, &Parts),
     layout: &FrameLayout,
     given: &[(String, String)],
+) -> bool {
+    let signals = protocol[long.message].signals.entries().filter(|(id, _)| Some(*id) != parts.counter);
+    let names: HashSet<_> = signals.map(|(_, signal)| signal.name.as_str()).collect();
+    let is_of_frame = |name: &str| names.contains(name) && !is_of_whole(long, name);
+    !layout.is_to_module() && given.iter().any(|(name, _)| is_of_frame(name))
+}
+
+/// Tests whether a name is that of a signal or of a field of the whole. These come before those of a frame.
+fn is_of_whole(long: &LongMessage, name: &str) -> bool {
+    let mut signals = long.content.signals.iter();
+    signals.any(|signal| signal.name == name || long.content.field_name(signal) == name)
+}
+
+/// Returns the texts for the signals of each frame that stand beside its data, and the data.
+fn typed_parts(
+    protocol: &Protocol,
+    (long, carried): (&LongMessage, &Parts),
+    given: &[(String, String)],
     (model, limits): (Option<ModelId>, Limits),
-) -> Result<Option<Vec<Texts>>, Refusal> {
-    let Some(long) = protocol.part_of(layout).map(|id| &protocol[id]) else { return Ok(None) };
-    let Some(carried) = long.parts() else { return Ok(None) };
-    let message = &protocol[layout.message];
-    let is_of_whole = |name: &str| {
-        let mut signals = long.content.signals.iter();
-        signals.any(|signal| signal.name == name || long.content.field_name(signal) == name)
-    };
-    let [number, data] = [carried.number, carried.data].map(|id| &message[id].name);
-    let is_of_frame = |name: &str| !is_of_whole(name) && (name == number || name == data);
-    if !layout.is_to_module() && given.iter().any(|(name, _)| is_of_frame(name)) {
-        return Ok(None);
-    }
-    let counter = carried.counter.map(|id| &message[id].name);
+) -> Result<Vec<(Texts, Vec<u8>)>, Refusal> {
+    let name = |id: SignalId| &protocol[long.message][id].name;
+    let (number, counter) = (name(carried.number), carried.counter.map(name));
     let (counters, given): (Vec<_>, Vec<_>) =
-        given.iter().cloned().partition(|(name, _)| Some(name) == counter && !is_of_whole(name));
+        given.iter().cloned().partition(|(name, _)| Some(name) == counter && !is_of_whole(long, name));
     let counters = if counters.is_empty() {
         counter.map(|name| (name.clone(), "0".to_owned())).into_iter().collect()
     } else {
@@ -311,11 +343,8 @@ fn typed_parts(
     };
     let joined = typed(protocol, (long.whole(), [0; 8]), &given, (model, limits))?;
     let parts = parts(long, model, &joined)?.into_iter();
-    let texts = |(part, text): (u16, String)| {
-        let known = [(number.clone(), part.to_string()), (data.clone(), text)];
-        known.into_iter().chain(counters.clone()).collect()
-    };
-    Ok(Some(parts.map(texts).collect()))
+    let texts = |part: u16| [(number.clone(), part.to_string())].into_iter().chain(counters.clone()).collect();
+    Ok(parts.map(|(part, data)| (texts(part), data)).collect())
 }
 
 /// Makes the data of a long message of what a call writes. A signal that is left out takes its default, if it has one.

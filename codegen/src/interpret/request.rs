@@ -183,7 +183,7 @@ pub fn requests(
     }
     let layout = request_layout(protocol, known, access)?;
     let Some((transport, long)) = protocol.carried(layout) else {
-        let made = |signals: &[_]| made(protocol, model, (known, layout), (target, source), signals);
+        let made = |layout: &_, signals: &[_]| made(protocol, model, (known, layout), (target, source), signals);
         return super::long::typed_frames(protocol, layout, signals, (model, Limits::Range(model)), made);
     };
     if let Some(model) = model.filter(|model| !known.is_of(*model)) {

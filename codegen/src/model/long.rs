@@ -45,8 +45,9 @@ pub struct Parts {
     pub number: SignalId,
     /// The signal of the frames that all parts of a message share, and the next message does not.
     pub counter: Option<SignalId>,
-    /// The signal of the frames that carries the data of a part.
-    pub data: SignalId,
+    /// Where the frames carry the data of a part: whole bytes, the first one highest.
+    #[serde(with = "place")]
+    pub data: Place,
     /// Number of data bytes in a part, those of the length included.
     pub size: u8,
     /// What the first part says of the number of data bytes.

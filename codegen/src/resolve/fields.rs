@@ -11,7 +11,7 @@ use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Array, ArrayId, ByteRun, Doc, Encoding, Kind, PartId, Signal, Table};
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Field, Key};
+use crate::syntax::ast::{self, Field, Key, PartData};
 use crate::syntax::tree::Path;
 
 /// Largest number of fields of a message, counting those of words, packed values and their types.
@@ -128,8 +128,8 @@ impl Resolver<'_> {
         leaves
     }
 
-    /// Resolves the fields of a frame that carries a part of a long message: its number, the counter of messages, and
-    /// the data.
+    /// Resolves the fields of a frame that carries a part of a long message: its number and the counter of messages.
+    /// Data that say nothing alone are a field, too.
     pub fn part_leaves(&mut self, path: &Path, parts: &ast::Parts, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
@@ -138,9 +138,11 @@ impl Resolver<'_> {
         if let Some(counter) = &parts.counter {
             self.number_of_parts((&path.key("counter"), COUNTER), counter, outer, &mut leaves);
         }
-        let data =
-            Field { bytes: Some(parts.data.clone()), format_of_number: Some("bytes".to_owned()), ..Field::default() };
-        self.leaf(&path.key("data"), DATA, &data, outer, &mut leaves);
+        if let PartData::Bytes(place) = &parts.data {
+            let data =
+                Field { bytes: Some(place.clone()), format_of_number: Some("bytes".to_owned()), ..Field::default() };
+            self.leaf(&path.key("data"), DATA, &data, outer, &mut leaves);
+        }
         leaves
     }
 

@@ -134,6 +134,7 @@ impl Resolver<'_> {
         head: Head,
     ) -> (Leaves, Option<LongMessageId>) {
         let mut frame = self.part_leaves(&path.key("parts"), parts, head.doc, head.name);
+        let data = self.part_data(&path.key("parts"), parts, &whole, &mut frame);
         frame.replies.extend(whole.replies);
         frame.given_up.extend(whole.given_up);
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
@@ -141,7 +142,7 @@ impl Resolver<'_> {
         let content = content(head, signals, arrays);
         let at = path.key("length");
         let path = path.key("parts");
-        let carrier = self.parts(&path, parts, &frame, head).map(Carrier::Parts);
+        let carrier = data.and_then(|data| self.parts(&path, parts, (&frame, data), head)).map(Carrier::Parts);
         let long = carrier.map(|carrier| LongMessage { message, content, carrier, lengths, frames: Vec::new() });
         let is_sound = frame.given_up.is_empty();
         let long = long.filter(|long| {
@@ -170,7 +171,7 @@ impl Resolver<'_> {
     ) -> (Leaves, Option<LongMessageId>) {
         let is_sound = whole.given_up.is_empty();
         let one_frame = lengths.iter().copied().filter(|length| *length <= 8).max().unwrap_or(8);
-        let (signals, arrays) = in_one_frame(&whole, one_frame.into());
+        let (signals, arrays) = in_one_frame(&whole, 0, one_frame.into());
         let plain = Leaves { signals, arrays, constants: Vec::new(), replies: whole.replies, given_up: whole.given_up };
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
@@ -302,10 +303,12 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the signals that end in a frame of some bytes, and the arrays that have elements there.
-fn in_one_frame(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
+/// Returns the signals of the first bytes, which stand behind some others in a frame, and the arrays that have elements
+/// there.
+pub fn in_one_frame(whole: &Leaves, before: u16, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
     let signals = whole.signals.iter().filter(|signal| signal.run.is_none() && signal.reach() <= bytes);
-    let signals: Vec<_> = signals.filter_map(in_frame).collect();
+    let moved = |signal: &Signal| signal.clone().changed(|signal| signal.window += before);
+    let signals: Vec<_> = signals.filter_map(|signal| in_frame(&moved(signal))).collect();
     let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
     let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
     let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();

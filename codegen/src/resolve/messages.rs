@@ -161,7 +161,11 @@ impl Resolver<'_> {
             refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
         if let Some(parts) = &message.parts {
-            self.check_whole(path, &frames, &signals);
+            let data = long.and_then(|long| Some(self.tables.long_messages[long].parts()?.data));
+            self.check_whole(path, data, (&frames, &signals));
+            if let Some(data) = data {
+                self.check_elements(path, parts, data, (&frames, &signals));
+            }
             if let Some(long) = long {
                 self.silence(long, &path.key("parts"), parts, surroundings.timing);
             }

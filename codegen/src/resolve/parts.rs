@@ -1,9 +1,10 @@
 //! Resolves how the frames of a long message are numbered, and where they say what belongs together.
 
+mod data;
+
 use std::ops::Range as Span;
 
 use canspec_runtime::Place;
-use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
 use super::access::Times;
@@ -36,8 +37,13 @@ const PLACE: [Key; 6] = [Key::Bytes, Key::Bits, Key::Title, Key::Note, Key::Sect
 
 impl Resolver<'_> {
     /// Reads `parts`, but for `count`.
-    pub fn parts(&mut self, path: &Path, parts: &ast::Parts, frame: &Leaves, head: Head) -> Option<Parts> {
-        let find = |name: &str| frame.signals.iter().position(|signal| signal.name == name);
+    pub fn parts(
+        &mut self,
+        path: &Path,
+        parts: &ast::Parts,
+        (frame, data): (&Leaves, Place),
+        head: Head,
+    ) -> Option<Parts> {
         let number = self.plain(&path.key("number"), frame, PART)?;
         let counter = match &parts.counter {
             Some(field) => {
@@ -47,18 +53,10 @@ impl Resolver<'_> {
             }
             None => None,
         };
-        let data = find(DATA)?;
-        let place = frame.signals[data].place;
-        if place.order() != ByteOrder::Big {
-            let text = "the data of a part run from its first byte to its last".to_owned();
-            let help = "write the lower number first, as in `1..6`";
-            self.error_with_help(&rules::PARTS, path.key("data").at_value(), text, help);
-            return None;
-        }
         let length = match &parts.length {
             Some(field) => {
                 self.check_place_alone(&path.key("length"), field)?;
-                Some(self.announcing(&path.key("length"), field, place, head)?)
+                Some(self.announcing(&path.key("length"), field, data, head)?)
             }
             None => None,
         };
@@ -67,13 +65,11 @@ impl Resolver<'_> {
             ByModel::Every(text) => (Some(self.integer(&at, text, 0, u16::MAX - MOST_BYTES)?), Vec::new()),
             ByModel::Each(numbers) => (None, self.model_firsts(&at, numbers)),
         };
-        let counter = counter.map(Id::new);
-        let [number, data] = [number, data].map(Id::new);
         Some(Parts {
-            number,
-            counter,
+            number: Id::new(number),
+            counter: counter.map(Id::new),
             data,
-            size: place.width() / 8,
+            size: data.width() / 8,
             length,
             first,
             model_firsts,
@@ -90,12 +86,19 @@ impl Resolver<'_> {
         None
     }
 
-    /// Tests that each frame with a part has all of its fields.
-    pub fn check_whole(&mut self, path: &Path, frames: &[FrameLayout], signals: &Table<SignalId, Signal>) {
+    /// Tests that each frame with a part has all of its fields, and all of the data.
+    pub fn check_whole(
+        &mut self,
+        path: &Path,
+        data: Option<Place>,
+        (frames, signals): (&[FrameLayout], &Table<SignalId, Signal>),
+    ) {
         let carrying = frames.iter().filter(|frame| !frame.signals.is_empty());
         let Some(shortest) = carrying.flat_map(|frame| &frame.lengths).min() else { return };
-        for signal in signals.iter().filter(|signal| signal.end() > *shortest) {
-            let text = format!("a frame of length {shortest} would have no `{}`", signal.name);
+        let ends = signals.iter().map(|signal| (signal.name.as_str(), signal.end().into()));
+        let ends = ends.chain(data.map(|data| (DATA, in_bytes(data).end)));
+        for (name, _) in ends.filter(|(_, end)| *end > usize::from(*shortest)).take(1) {
+            let text = format!("a frame of length {shortest} would have no `{name}`");
             let help = "let every `length` of the message have room for the whole part";
             self.error_with_help(&rules::PARTS, path.key("parts").at_key(), text, help);
         }

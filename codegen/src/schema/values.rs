@@ -44,11 +44,13 @@ enum Demand {
 
 /// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
 /// [`of_field`].
-const FORMS: [(&str, &str, Form); 16] = [
+const FORMS: [(&str, &str, Form); 18] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
     ("Access", "request", NUMBER),
+    ("Elements", "bytes", PLACE),
+    ("Elements", "repeat", NUMBER),
     ("Example", "count", NUMBER),
     ("Message", "length", LENGTH),
     ("Message", "match", NUMBER),

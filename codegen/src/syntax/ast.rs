@@ -7,7 +7,7 @@ mod reading;
 mod travel;
 
 pub use field::{Field, Key};
-pub use message::{Example, Means, Message, Parts, Sequence};
+pub use message::{Elements, Example, Means, Message, Parts, Sequence};
 pub use quantity::{Product, Quantity, SignalPath, States};
 pub use travel::{Access, Foreign, Mode, Transport};
 
@@ -406,6 +406,15 @@ pub enum ByModel {
     Every(String),
     /// One for each of these models: `{V10: 0, V11: 1}`.
     Each(Map<String>),
+}
+
+/// What a part of a message carries.
+#[derive(Clone, Debug)]
+pub enum PartData {
+    /// Bytes that say nothing alone: `1..6`.
+    Bytes(String),
+    /// Elements of the arrays of its message: `{bytes: 1..2, repeat: 3}`.
+    Elements(Elements),
 }
 
 /// One number, or a list of numbers.

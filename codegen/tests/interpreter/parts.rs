@@ -1,9 +1,10 @@
 //! Messages in numbered parts, and what becomes of them if parts are lost or messages overlap.
 
+use canspec_codegen::interpret::{Assembly, Content, decode, encode_long};
 use canspec_codegen::model::NoteRule;
 
 use super::assembled::{assembled, check};
-use super::feature;
+use super::{feature, frame, model, printed, values};
 
 /// A battery's six cells in three parts of three words, without the cycles in the first two bytes.
 const FIRST: &str = "051#010201E8030A0000";
@@ -101,4 +102,43 @@ fn a_request_that_carries_no_part_ends_what_the_device_has_begun() {
         &[SIX, FIRST, bare, SECOND],
         (vec![(vec![1], lost), (vec![3], Some("the parts 1, 3 are missing"))], vec![0, 2]),
     );
+}
+
+#[test]
+fn a_frame_of_elements_shows_its_own_and_the_whole_shows_all() {
+    let parts = feature("parts_of_elements");
+    let frames = ["051#000CF00CFD0D1300", "051#010CD30D0B000000", "051#020CF00000000000"];
+    let names: Vec<_> = values(&parts, frames[0]).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["part", "voltage_1", "voltage_2", "voltage_3"]);
+    // Nothing is put together as long as nobody knows the number of the first part.
+    check(&parts, &frames, (vec![], vec![0, 1, 2]));
+    let joined = |name, frames: &[&str]| {
+        let (model, mut assembly, mut ended) = (Some(model(&parts, name)), Assembly::default(), Vec::new());
+        for frame in frames.iter().map(|text| frame(text)) {
+            let decoded = decode(&parts, model, &frame).expect("a frame of the protocol");
+            ended.extend(assembly.take(&parts, model, (), &frame, &decoded).ended);
+        }
+        ended
+            .iter()
+            .map(|whole| whole.decoded.signals.iter().map(|reading| reading.bits).collect())
+            .collect::<Vec<Vec<_>>>()
+    };
+    // There can be eight cells in three parts, so the third one ends the message.
+    assert_eq!(joined("FROM_0", &frames), [[3312, 3325, 3347, 3283, 3339, 0, 3312, 0]]);
+    assert_eq!(joined("FROM_1", &frames), [[0; 0]; 0]);
+    // The device says that it has five.
+    assert_eq!(joined("FROM_0", &["031#0500000000000000", frames[0], frames[1]]), [[3312, 3325, 3347, 3283, 3339]]);
+}
+
+#[test]
+fn bits_between_elements_are_noted_and_come_back() {
+    let parts = feature("parts_of_words");
+    // The upper bits of bytes 2 and 5 have no field.
+    let frames = ["071#D70001F6FF020000", "071#0000000A00F10001", "071#1400210000000002"];
+    let (ended, _) = assembled(&parts, &frames);
+    let [whole] = ended.as_slice() else { panic!("one message") };
+    assert_eq!(whole.decoded.notes.iter().map(|note| note.rule).collect::<Vec<_>>(), [NoteRule::ReservedBit]);
+    assert_eq!(whole.reserved, [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF0, 0, 0, 0x20, 0, 0, 0]);
+    let made = encode_long(&parts, None, &Content::of_long(&parts, whole)).expect("what came can be sent");
+    assert_eq!(made.iter().map(printed).collect::<Vec<_>>(), frames);
 }

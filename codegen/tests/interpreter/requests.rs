@@ -466,6 +466,32 @@ fn the_last_part_is_filled_up_with_bits_as_they_are_sent() {
     assert_eq!(last_part("long_fields", ("pack", Kind::Report), &pack).as_deref(), Some("611#0B03FFFFFFFFFFFF"));
 }
 
+/// Returns the frames of a message that module 1 sends, or why there are none.
+fn sent_of(spec: &str, (model_name, message): (Option<&str>, &str), signals: &[(&str, &str)]) -> Vec<String> {
+    let protocol = feature(spec);
+    let model = model_name.map(|name| model(&protocol, name));
+    let message = Sent { kind: Some(Kind::Reply), access: None, model, message, to: None, source: Some(1) };
+    let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    let frames = sent(&protocol, message, &signals).map(|frames| frames.iter().map(printed).collect());
+    frames.unwrap_or_else(|refusal| vec![refusal.to_string()])
+}
+
+#[test]
+fn a_list_of_elements_becomes_all_parts_and_elements_beside_a_number_become_one() {
+    // 0x0CF0 is 3312, 0x0CFD 3325, 0x0D13 3347, 0x0CD3 3283 and 0x0D0B 3339.
+    let cells = [("voltage", "3.312V,3.325V,3.347V,3.283V,3.339V")];
+    let [from_0, from_1] =
+        ["FROM_0", "FROM_1"].map(|model| sent_of("parts_of_elements", (Some(model), "cells"), &cells));
+    assert_eq!(from_0, ["051#000CF00CFD0D1300", "051#010CD30D0B000000"]);
+    assert_eq!(from_1, ["051#010CF00CFD0D1300", "051#020CD30D0B000000"]);
+    let why = "cells: the first part has another number on each model; choose a model";
+    assert_eq!(sent_of("parts_of_elements", (None, "cells"), &cells), [why]);
+    let one = [("part", "3"), ("voltage", "3.312V,3.325V,3.347V")];
+    assert_eq!(sent_of("parts_of_elements", (None, "cells"), &one), ["051#030CF00CFD0D1300"]);
+    let missing = [("part", "3"), ("voltage_1", "3.312V")];
+    assert_eq!(sent_of("parts_of_elements", (None, "cells"), &missing), ["cells: the signal `voltage_2` is missing"]);
+}
+
 #[test]
 fn a_value_that_only_another_kind_of_frame_carries_is_refused_with_the_name_of_that_kind() {
     let in_request = written(&WIDE.replace("reply: {}, answers", "reply: {}, in: [request], answers"));

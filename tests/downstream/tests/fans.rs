@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
+use winch_driver::fan::parts::{Assembler, Outcome};
 use winch_driver::fan::{
-    Air, Error, Failure, Frame, History, Hours, Identifier, Layout, Message, Model, Power, Problem, Replies, Request,
-    SetBlades, SetLamp, SetSpeed, Target, Text,
+    Air, Bytes, Curve, CurvePart, Error, Failure, Frame, History, HistoryPart, Hours, Identifier, Layout, Message,
+    Model, Power, Problem, Replies, Request, SetBlades, SetLamp, SetSpeed, Target, Text,
 };
 
 /// Raw -1501, raw 25 and raw 1.
@@ -130,7 +131,36 @@ fn a_request_of_a_message_in_parts_gets_its_parts() {
     let request = History::read(Target::Fan(1)).expect("fan 1 is documented");
     assert_eq!(*request.frame(), frame(0x0196_01E1, &[0; 8]));
     let reply = request.reply(&frame(0x0196_E101, &[2, 8, 0, 0xFA, 0xFF, 0xFD, 0xFF, 0]));
-    assert_eq!(reply.map(|reply| reply.values.map(|part| part.part)), Some(Ok(2)));
+    let part = HistoryPart { part: 2, speed_rpm: [4.0, -3.0, -1.5] };
+    assert_eq!(reply.map(|reply| reply.values), Some(Ok(part)));
+}
+
+#[test]
+fn the_elements_of_all_parts_are_one_list() {
+    let mut assembler = Assembler::<History, 1>::new(100);
+    assert!(assembler.receive(&frame(0x0196_E101, &[1, 2, 0, 4, 0, 6, 0, 0]), 0).next().is_none());
+    let ended = assembler.receive(&frame(0x0196_E101, &[2, 8, 0, 0xFA, 0xFF, 0xFD, 0xFF, 0]), 1).next();
+    let Some(Outcome::Whole(whole)) = ended else { panic!("both parts came") };
+    assert_eq!(whole.values, History { speed_rpm: [1.0, 2.0, 3.0, 4.0, -3.0, -1.5] });
+}
+
+#[test]
+fn of_a_part_that_goes_to_a_fan_nothing_but_the_counter_can_be_changed() {
+    let curve = Curve { speed_rpm: [1.0, 2.0, 3.0, 4.0] };
+    let frames = curve.set(Target::Fan(1)).expect("speeds within their limits");
+    let [first, second] = <[Frame; 2]>::try_from(frames.collect::<Vec<_>>()).expect("two parts");
+    assert_eq!(first, frame(0x0197_01E1, &[0, 2, 0, 4, 0, 6, 0, 0]));
+    assert_eq!(second, frame(0x0197_01E1, &[1, 8, 0, 0, 0, 0, 0, 0]));
+    let received = decoded(&second);
+    let Message::CurvePart(part) = *received.content() else { panic!("it carries a part") };
+    let built = |part| received.clone().with_content(Message::CurvePart(part)).encode();
+    assert_eq!(built(CurvePart { counter: 7, ..part }), Ok(frame(0x0197_01E1, &[0xE1, 8, 0, 0, 0, 0, 0, 0])));
+    let refused = |part| match built(part) {
+        Err(Error::Value(refused)) => refused.signal(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(CurvePart { part: 2, ..part }), "part");
+    assert_eq!(refused(CurvePart { data: Bytes::new([9, 0, 0, 0, 0, 0]), ..part }), "data");
 }
 
 /// Raw 25 and raw -3.

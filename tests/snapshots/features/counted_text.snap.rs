@@ -230,7 +230,7 @@ impl Parted for Note {
     type Part = NotePart;
     type Memory = [u8; 43];
     const NUMBER: Place = NotePart::PART.place();
-    const DATA: Place = NotePart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const FIRST: Option<u16> = Some(1);
     const SAID: fn(&Message) -> Said = |message| match message {
         Message::NotePart(_) => Said::Part,
@@ -311,7 +311,7 @@ impl Parted for Remark {
     type Part = RemarkPart;
     type Memory = [u8; 65];
     const NUMBER: Place = RemarkPart::PART.place();
-    const DATA: Place = RemarkPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const COUNTER: Option<Place> = Some(RemarkPart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
     const FIRST: Option<u16> = Some(0);

@@ -192,7 +192,7 @@ impl Parted for DcStatus {
     type Part = DcStatusPart;
     type Memory = [u8; 15];
     const NUMBER: Place = DcStatusPart::PART.place();
-    const DATA: Place = DcStatusPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const COUNTER: Option<Place> = Some(DcStatusPart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
     const SIZES: &'static [usize] = &[9, 11];

@@ -223,7 +223,7 @@ impl Parted for Engine {
     type Part = EnginePart;
     type Memory = [u8; 22];
     const NUMBER: Place = EnginePart::PART.place();
-    const DATA: Place = EnginePart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const COUNTER: Option<Place> = Some(EnginePart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
     const SILENCE: Option<u32> = Some(750);
@@ -323,7 +323,7 @@ impl Parted for Cells {
     type Part = CellsPart;
     type Memory = [u8; 36];
     const NUMBER: Place = CellsPart::PART.place();
-    const DATA: Place = CellsPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const COUNTER: Option<Place> = Some(CellsPart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
     const FIRST: Option<u16> = Some(0);

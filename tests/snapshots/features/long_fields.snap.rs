@@ -245,7 +245,7 @@ impl Parted for Pack {
     type Part = PackPart;
     type Memory = [u8; 86];
     const NUMBER: Place = PackPart::PART.place();
-    const DATA: Place = PackPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const FIRST: Option<u16> = Some(0);
     const SAID: fn(&Message) -> Said = |message| match message {
         Message::PackPart(_) => Said::Part,

@@ -147,7 +147,7 @@ impl Parted for Maker {
     type Part = MakerPart;
     type Memory = [u8; 29];
     const NUMBER: Place = MakerPart::PART.place();
-    const DATA: Place = MakerPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const FIRST: Option<u16> = Some(1);
     const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
     const SAID: fn(&Message) -> Said = |message| match message {
@@ -221,7 +221,7 @@ impl Parted for Label {
     type Part = LabelPart;
     type Memory = [u8; 43];
     const NUMBER: Place = LabelPart::PART.place();
-    const DATA: Place = LabelPart::DATA.place();
+    const DATA: Place = Place::bytes(2, 7);
     const FIRST: Option<u16> = Some(0);
     const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
     const SAID: fn(&Message) -> Said = |message| match message {

@@ -259,7 +259,7 @@ impl Parted for Cells {
     type Part = CellsPart;
     type Memory = [u8; 19];
     const NUMBER: Place = CellsPart::PART.place();
-    const DATA: Place = CellsPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 6);
     const FIRST: Option<u16> = Some(1);
     const SAID: fn(&Message) -> Said = |message| match message {
         Message::CellsPart(_) => Said::Part,

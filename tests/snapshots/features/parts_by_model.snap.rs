@@ -245,7 +245,7 @@ impl Parted for Label {
     type Part = LabelPart;
     type Memory = [u8; 13];
     const NUMBER: Place = LabelPart::PART.place();
-    const DATA: Place = LabelPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 3);
     const FIRST: Option<u16> = None;
     const MODEL_FIRSTS: &'static [(u8, u16)] = &[(Model::A as u8, 0), (Model::B as u8, 1)];
     const SAID: fn(&Message) -> Said = |message| match message {

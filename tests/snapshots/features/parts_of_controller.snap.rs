@@ -200,7 +200,7 @@ impl Parted for Label {
     type Part = LabelPart;
     type Memory = [u8; 22];
     const NUMBER: Place = LabelPart::PART.place();
-    const DATA: Place = LabelPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 7);
     const COUNTER: Option<Place> = Some(LabelPart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
     const FIRST: Option<u16> = Some(0);

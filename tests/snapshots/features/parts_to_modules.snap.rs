@@ -319,7 +319,7 @@ impl Parted for Program {
     type Part = ProgramPart;
     type Memory = [u8; 19];
     const NUMBER: Place = ProgramPart::PART.place();
-    const DATA: Place = ProgramPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 6);
     const FIRST: Option<u16> = Some(1);
     const TO_MODULE: &'static [(&'static Exchange, Kind)] = &[(&ProgramPart::SET, Kind::Request)];
     const SAID: fn(&Message) -> Said = |message| match message {

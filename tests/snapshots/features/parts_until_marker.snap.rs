@@ -224,7 +224,7 @@ impl Parted for Label {
     type Part = LabelPart;
     type Memory = [u8; 392];
     const NUMBER: Place = LabelPart::PART.place();
-    const DATA: Place = LabelPart::DATA.place();
+    const DATA: Place = Place::bytes(2, 7);
     const FIRST: Option<u16> = Some(1);
     const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
     const SAID: fn(&Message) -> Said = |message| match message {

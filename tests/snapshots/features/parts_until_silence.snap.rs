@@ -128,7 +128,7 @@ impl Parted for Trips {
     type Part = TripsPart;
     type Memory = [u8; 62];
     const NUMBER: Place = TripsPart::PART.place();
-    const DATA: Place = TripsPart::DATA.place();
+    const DATA: Place = Place::bytes(1, 6);
     const SILENCE: Option<u32> = Some(50);
     const FIRST: Option<u16> = Some(1);
     const SAID: fn(&Message) -> Said = |message| match message {

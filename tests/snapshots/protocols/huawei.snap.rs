@@ -2499,7 +2499,7 @@ impl Parted for ELabel {
     type Part = ELabelPart;
     type Memory = [u8; 1225];
     const NUMBER: Place = ELabelPart::PART.place();
-    const DATA: Place = ELabelPart::DATA.place();
+    const DATA: Place = Place::bytes(2, 7);
     const FIRST: Option<u16> = Some(1);
     const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
     const SAID: fn(&Message) -> Said = |message| match message {

@@ -125,7 +125,7 @@ impl Draft {
         let message = &protocol[decoded.message];
         let (_, long) = protocol.long_message(message).filter(|_| !decoded.signals.is_empty())?;
         let parts = long.parts()?;
-        let (number, data) = (message[parts.number].place, message[parts.data].place);
+        let (number, data) = (message[parts.number].place, parts.data);
         let varying = long.varying().map(|field| field.least..=field.most);
         let count = varying.map(|counts| self.random.usize(counts));
         let mut assembly = Assembly::default();

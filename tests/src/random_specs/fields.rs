@@ -77,19 +77,25 @@ impl Draft {
         }
         let varies = self.random.bool();
         let (size, most) = (self.random.u8(1..=4), self.random.u8(2..=30));
-        let mut array = Map::of([("bytes", self.bytes(first, size))]);
-        if self.random.bool() {
-            let parts = self.parts(8 * size, &mut scope, false);
-            array.put("fields", parts);
-        } else {
-            self.fill(&mut array, 8 * size);
-        }
+        let mut array = self.element(first, size, &mut scope);
         let least = self.random.u8(1..most);
         array.put("repeat", if varies { format!("{least}..{most}") } else { most.to_string() });
         let name = self.names.plain(&mut scope);
         fields.put(name, array);
         let whole = u16::from(first) + u16::from(size) * u16::from(most);
         (fields, if varies { Length::Elements } else { Length::Fixed([u16::from(first), whole]) })
+    }
+
+    /// Returns the first element of an array of a message of several frames: a word or another field.
+    pub fn element(&mut self, first: u8, size: u8, scope: &mut Scope) -> Map {
+        let mut element = Map::of([("bytes", self.bytes(first, size))]);
+        if self.random.bool() {
+            let parts = self.parts(8 * size, scope, false);
+            element.put("fields", parts);
+        } else {
+            self.fill(&mut element, 8 * size);
+        }
+        element
     }
 
     /// Returns a field of `count` bytes.

@@ -249,7 +249,8 @@ impl Draft {
         if bus.transport.is_some() && is_by_command && self.chance(50) {
             self.by_transport(&mut message);
         } else if bus.header_bytes < 5 && self.chance(25) {
-            self.in_parts(bus, traffic, &mut message);
+            let is_reported = accesses.iter().all(|access| access.role == Role::Report && access.kinds == ["report"]);
+            self.in_parts(bus, traffic, &mut message, is_reported);
         } else {
             self.content(bus, &mut message, &kinds, false);
         }

@@ -143,5 +143,6 @@ for _, message in ipairs(protocol.messages) do
   for _, signal in ipairs(long and long.signals or {}) do
     prepare_signal(signal)
   end
+  if long and long.parts then prepare(long.parts.data) end
   if long and long.parts and long.parts.length then prepare(long.parts.length) end
 end

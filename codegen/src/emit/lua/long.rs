@@ -47,7 +47,7 @@ fn parts(parts: &Parts, silence: Option<Duration>) -> Value {
     Value::record()
         .with("number", Value::id(parts.number))
         .maybe("counter", parts.counter.map(Value::id))
-        .with("data", Value::id(parts.data))
+        .with("data", place(parts.data))
         .with("size", Value::number(parts.size))
         .maybe("length", parts.length.map(|length| place(length.place)))
         .maybe("first", parts.first.map(Value::number))

@@ -124,13 +124,12 @@ end
 local function part_of(frame, decoded, first)
   local long, signals = decoded.layout.message.long, decoded.layout.message.signals
   local number = raw_value(frame, decoded, signals[long.parts.number])
-  local data = raw_value(frame, decoded, signals[long.parts.data])
-  if not (number and data and first) then return nil end
+  if not (number and first) then return nil end
   local index = double(number) - first
   if index < 0 or index >= parts_of(long, longest(long)) then return nil end
   local counter = long.parts.counter and double(raw_value(frame, decoded, signals[long.parts.counter]))
   local announced = index == 0 and long.parts.length and double(get(frame, long.parts.length)) or nil
-  return { index = index, data = digits(data, 2 * long.parts.size), counter = counter, announced = announced }
+  return { index = index, data = digits(get(frame, long.parts.data), 2 * long.parts.size), counter = counter, announced = announced }
 end
 
 -- Takes a frame of a message in parts, and adds the messages that it ends.

@@ -53,7 +53,7 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             type Part = #part;
             type Memory = [u8; #memory];
             const NUMBER: Place = #part::#number.place();
-            const DATA: Place = #part::#data.place();
+            const DATA: Place = #data;
             #(#counter)*
             #(#length)*
             #sizes

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{ByModel, Field, Map, Names, Pattern, Reserved, Words};
+use super::{ByModel, Field, Map, Names, PartData, Pattern, Reserved, Words};
 
 /// A message: what chooses it, how it travels, and what it carries.
 #[derive(Clone, Debug, Deserialize)]
@@ -88,8 +88,9 @@ pub struct Parts {
     pub counter: Option<Field>,
     /// Number of the first part, or one for each model: `1` or `{V10: 0, V11: 1}`.
     pub first: ByModel,
-    /// Bytes of the frame with the data of the part, the first one first: `1..6`.
-    pub data: String,
+    /// Bytes of the frame with the data of the part, the first one first: `1..6`. Or the bytes of the first element of
+    /// an array in it, and how many elements each part has: `{bytes: 1..2, repeat: 3}`. The frame then shows these.
+    pub data: PartData,
     /// Field of the first part with the number of data bytes of all parts: `{bytes: 1}`; none if absent. It stands at
     /// the front of `data`, and its bytes do not count.
     pub length: Option<Field>,
@@ -99,6 +100,17 @@ pub struct Parts {
     /// Name of the entry of `timing` that ends a message: no further part has come for so long. It is whole if nothing
     /// says that more of it comes. If absent, silence says nothing.
     pub silence: Option<String>,
+}
+
+/// Where each part has elements of the arrays of its message.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Elements {
+    /// Bytes of the frame with the first element, the first one first: `1..2`.
+    pub bytes: String,
+    /// How many elements each part has: `3`. They have no gaps between them.
+    pub repeat: String,
 }
 
 /// One frame of the document and what it means.

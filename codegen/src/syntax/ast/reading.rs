@@ -8,7 +8,8 @@ use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::{
-    ByModel, DescribedValue, Field, IdentifierEntry, Map, Means, NamedValue, Names, Numbers, SignalPath, States, Words,
+    ByModel, DescribedValue, Elements, Field, IdentifierEntry, Map, Means, NamedValue, Names, Numbers, PartData,
+    SignalPath, States, Words,
 };
 
 impl<'de> Deserialize<'de> for Words {
@@ -143,6 +144,28 @@ impl<'de> Deserialize<'de> for ByModel {
             }
         }
         deserializer.deserialize_any(ByModelVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for PartData {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct DataVisitor;
+        impl<'de> Visitor<'de> for DataVisitor {
+            type Value = PartData;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a place such as `1..6`, or a map with `bytes` and `repeat`")
+            }
+
+            fn visit_str<E>(self, place: &str) -> Result<PartData, E> {
+                Ok(PartData::Bytes(place.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PartData, A::Error> {
+                Elements::deserialize(MapAccessDeserializer::new(map)).map(PartData::Elements)
+            }
+        }
+        deserializer.deserialize_any(DataVisitor)
     }
 }
 

@@ -68,8 +68,24 @@ impl Draft {
         message.put("fields", fields);
     }
 
-    /// Adds what a message carries in several frames.
-    pub(super) fn in_parts(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
+    /// Returns where each part has elements, and the array that they are of. Data begin with a byte of the frame.
+    fn elements(&mut self, first: u8) -> (Map, Map) {
+        let size = self.random.u8(1..=(8 - first) / 2);
+        let count = self.random.u8(2..=(8 - first) / size);
+        let last = first + size - 1;
+        let bytes = if size == 1 { first.to_string() } else { format!("{first}..{last}") };
+        let data = Map::of([("bytes", bytes), ("repeat", count.to_string())]);
+        let (mut fields, mut scope) = (Map::default(), Scope::default());
+        let mut array = self.element(0, size, &mut scope);
+        let most = self.random.u8(count..=30);
+        array.put("repeat", if self.random.bool() { format!("1..{most}") } else { most.to_string() });
+        let name = self.names.plain(&mut scope);
+        fields.put(name, array);
+        (data, fields)
+    }
+
+    /// Adds what a message carries in several frames. Frames of what is reported may show elements.
+    pub(super) fn in_parts(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map, is_reported: bool) {
         let (number, mut data) = (bus.header_bytes, bus.header_bytes + 1);
         let mut parts = Map::of([("number", Map::of([("bytes", number.to_string())]))]);
         if self.chance(30) {
@@ -84,6 +100,14 @@ impl Draft {
             let models = self.models.clone();
             let firsts = self.some(&models).into_iter().enumerate();
             parts.put("first", Map::of(firsts.map(|(index, model)| (model, index.to_string()))));
+        }
+        // Specs without elements stay as they are, so the number that decides is drawn apart.
+        if is_reported && data <= 6 && self.random.clone().u8(..100) < 50 {
+            let (data, fields) = self.elements(data);
+            parts.put("data", data);
+            message.put("parts", parts);
+            message.put("fields", fields);
+            return;
         }
         let last = self.random.u8(data..8);
         parts.put("data", if data == last { data.to_string() } else { format!("{data}..{last}") });

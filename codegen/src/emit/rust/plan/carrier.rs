@@ -23,8 +23,8 @@ pub struct Carrier {
     pub number: Ident,
     /// Constant of the signal that all parts of a message share.
     pub counter: Option<Ident>,
-    /// Constant of the signal with the data of a part.
-    pub data: Ident,
+    /// Where the data of a part are.
+    pub data: TokenStream,
     /// Where the first part says how many data bytes there are.
     pub length: Option<TokenStream>,
     /// The numbers of data bytes that it can have, if the spec lists them.
@@ -76,7 +76,7 @@ impl Planner<'_> {
         let long = &self.protocol[id];
         let (LongMessage { message, .. }, rule) = (long, long.parts()?);
         let frame = &self.messages[*message];
-        let parts = self.variants_with(*message, rule.data);
+        let parts = self.variants_with(*message, rule.number);
         let counts = rule.count.map(|(message, signal)| {
             let (home, constant) = (&self.messages[message].home, &self.messages[message].signals[signal].constant);
             (self.variants_with(message, signal), quote!(#home::#constant.place()))
@@ -89,7 +89,7 @@ impl Planner<'_> {
             part: frame.home.clone(),
             number: frame.signals[rule.number].constant.clone(),
             counter: rule.counter.map(|counter| frame.signals[counter].constant.clone()),
-            data: frame.signals[rule.data].constant.clone(),
+            data: Written::new(rule.data).to_token_stream(),
             length: rule.length.map(|length| Written::new(length.place).to_token_stream()),
             sizes: long.lengths.clone(),
             silence: self.protocol.silence(long).map(milliseconds),

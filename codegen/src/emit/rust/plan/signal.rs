@@ -168,10 +168,11 @@ impl Context<'_> {
     /// Returns the signals of a part that a module can get. Nobody changes them, since limits hold for the whole message.
     fn kept(&self, message: &Message) -> Vec<SignalId> {
         let parts = message.long.and_then(|long| Some((long, self.protocol[long].parts()?)));
-        let Some((long, Parts { number, data, .. })) = parts else { return Vec::new() };
+        let Some((long, Parts { counter, .. })) = parts else { return Vec::new() };
         let mut frames = self.protocol.frames_of(message);
         let is_sent = frames.any(|frame| frame.is_to_module() && self.protocol.part_of(frame) == Some(long));
-        if is_sent { vec![*number, *data] } else { Vec::new() }
+        let kept = message.signals.ids().filter(|signal| is_sent && Some(*signal) != *counter);
+        kept.collect()
     }
 
     /// Plans the signals of what several frames carry together. The elements of an array are one.
