@@ -290,6 +290,57 @@ fn fields_that_are_called_like_those_of_a_part_are_given_by_name() {
     assert_eq!(out, "0EF#400D0100DC4F7665\n0EF#416E207265616479\n");
 }
 
+/// Decodes frames of a battery of Daly, and returns the objects of whole messages.
+fn daly(model: &str, log: &[&str]) -> Vec<Value> {
+    let call = ["decode", "--assemble", "--model", model, "--format", "jsonl", "-"];
+    let (out, _) = canspec_with("../../../specs/daly.yaml", &call, &log.join("\n"));
+    let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
+    objects.filter(|line: &Value| line.get("lines").is_some()).collect()
+}
+
+#[test]
+fn the_cells_of_a_battery_are_one_list_as_its_model_numbers_the_frames() {
+    // The blocks M2 and M3 of the document, with the numbers of cells that it says.
+    let thirteen = [
+        "18944001#0D00000000000000",
+        "18954001#000CE50CE30CE900",
+        "18954001#010CE20CEE0CEB00",
+        "18954001#020CE00CE60CE800",
+        "18954001#030CE40CDF0CEC00",
+        "18954001#040CE70000000000",
+    ];
+    let [whole] = &daly("FRAMES_FROM_0", &thirteen)[..] else { panic!("one message") };
+    let cells = json!([3.301, 3.299, 3.305, 3.298, 3.31, 3.307, 3.296, 3.302, 3.304, 3.3, 3.295, 3.308, 3.303]);
+    assert_eq!((&whole["signals"]["voltage"]["value"], &whole["notes"]), (&cells, &json!([])));
+    let seven = [
+        "18944001#0700000000000000",
+        "18954001#0110061002100900",
+        "18954001#0210031005100100",
+        "18954001#0310040000000000",
+    ];
+    let [whole] = &daly("FRAMES_FROM_1", &seven)[..] else { panic!("one message") };
+    assert_eq!(whole["signals"]["voltage"]["value"], json!([4.102, 4.098, 4.105, 4.099, 4.101, 4.097, 4.1]));
+    // A battery that counts from 0 would send frame 0 before frame 1.
+    assert_eq!(daly("FRAMES_FROM_0", &seven)[0]["incomplete"], "part 0 is missing");
+    // Block M4: ten temperatures, the second one of 0x41 less 40.
+    let ten = ["18944001#000A000000000000", "18964001#0040413F26284742", "18964001#01433E0000000000"];
+    let [whole] = &daly("FRAMES_FROM_0", &ten)[..] else { panic!("one message") };
+    assert_eq!(
+        whole["signals"]["temperature"]["value"],
+        json!([24.0, 25.0, 23.0, -2.0, 0.0, 31.0, 26.0, 27.0, 22.0, -40.0])
+    );
+}
+
+#[test]
+fn cells_that_nobody_has_counted_are_shown_with_the_last_frame_that_there_can_be() {
+    let frames: Vec<_> = (0..16).map(|part| format!("18954001#{part:02X}0CF00CFD0D1300")).collect();
+    let frames: Vec<_> = frames.iter().map(String::as_str).collect();
+    let [whole] = &daly("FRAMES_FROM_0", &frames)[..] else { panic!("one message") };
+    assert_eq!(whole["signals"]["voltage"]["raw"].as_array().map(Vec::len), Some(48));
+    assert_eq!(whole["notes"][0]["rule"], "count");
+    assert_eq!(whole["lines"].as_array().map(Vec::len), Some(16));
+}
+
 #[test]
 fn limits_of_fields_hold_before_the_first_part_is_printed() {
     let call = |values: &[&str]| {

@@ -226,6 +226,44 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 /// on anything else", because a layout table after the document and descriptions by users have 0.
 pub const READ_ACCESS: Access = Access::new("read", &[Some(Who::One)]).request(&FRAME).reply(&FRAME);
 
+/// A device model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Model {
+    /// `FRAMES_FROM_0`: Devices that count the frames of 0x95 and 0x96 from 0. Section 6.3, 7.2.
+    ///
+    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, by a model for each;
+    /// numbers up to 16 for voltages", because devices are widely reported to begin with 1; a frame 0, or
+    /// one whose number is the number of frames, shows which it is.
+    FramesFrom0,
+    /// `FRAMES_FROM_1`: Devices that count the frames of 0x95 and 0x96 from 1. Section 6.3, 7.2.
+    ///
+    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, by a model for each;
+    /// numbers up to 16 for voltages", because devices are widely reported to begin with 1; a frame 0, or
+    /// one whose number is the number of frames, shows which it is.
+    FramesFrom1,
+}
+
+impl Model {
+    /// Every device model.
+    pub const ALL: [Self; 2] = [Self::FramesFrom0, Self::FramesFrom1];
+
+    /// Returns the vendor's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FramesFrom0 => "FRAMES_FROM_0",
+            Self::FramesFrom1 => "FRAMES_FROM_1",
+        }
+    }
+}
+
+impl From<Model> for u8 {
+    fn from(model: Model) -> Self {
+        model as Self
+    }
+}
+
 /// Whether the battery is charging or discharging. Section 5.4.
 #[derive(Clone, Copy, Debug)]
 pub enum OperatingState {
@@ -1207,32 +1245,69 @@ impl Layout for StatusInformation {
 /// Voltages of the cells, three in each frame: `command` 0x95. Section 6.1, 6.2.
 /// - [`read`](READ_ACCESS): the battery answers (`point_to_point`).
 /// - Request `18950140#0000000000000000`.
-/// - Reply `18954001#000CF00CFD0D1300`: `part` 0, `voltage_1` 3.312 V, `voltage_2` 3.325 V, `voltage_3`
-///   3.347 V.
+/// - Reply of `FRAMES_FROM_0` `18954001#000CF00CFD0D1300`: `part` 0, `voltage_1` 3.312 V, `voltage_2`
+///   3.325 V, `voltage_3` 3.347 V.
 ///
 /// As many frames as a third of `cell_count` in `status_information`, rounded up, at most 16.
 ///
 /// Erratum N3: printed is "nothing about the last bytes, or that byte 7 is reserved", used is
 /// "reserved, with a note if a bit is set", because nothing else is said.
 ///
-/// Erratum Y16: printed is "nothing about places without a cell or a sensor", used is "values like the
-/// others; the numbers of 5.5 tell which to drop", because no value is left for them: 0x00 is -40 °C
-/// where there is a sensor.
+/// Erratum Y16: printed is "nothing about places without a cell or a sensor", used is "no values, where
+/// the numbers of 5.5 are known; else values like the others", because no value is left for them: 0x00
+/// is -40 °C where there is a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellVoltages {
-    /// Number of the frame: byte 0, `0..=16`, raw 255 is `invalid`. Section 6.2, 6.3.
+    /// Voltage of a cell in V: bytes 0..1 to bytes 94..95, 1 to 48 elements, steps of 0.001 V.
     ///
-    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, so numbers up to 16
-    /// for voltages", because devices are widely reported to begin with 1; a frame 0, or one whose number
-    /// is the number of frames, shows which it is.
-    pub part: u8,
-    /// Voltages of three cells in V: bytes 1..2 to bytes 5..6, steps of 0.001 V.
-    ///
-    /// If frames count from 0, frame n has the cells 3n + 1 to 3n + 3; if they count from 1, 3n - 2 to 3n.
-    pub voltage_v: [f64; 3],
+    /// A frame has three; if frames count from 0, frame n has the cells 3n + 1 to 3n + 3; if they count
+    /// from 1, 3n - 2 to 3n.
+    pub voltage_v: Elements<f64, 48>,
 }
 
 impl CellVoltages {
+    /// The elements of `voltage`, to read or write one alone, or to ask for their limits.
+    pub const VOLTAGE: LongSignal<u16, f64> =
+        LongSignal::new(0, Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 1000)).every(2);
+
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
+    #[inline(always)]
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<CellVoltagesPart>, Error> {
+        CellVoltagesPart::READ.inlined_request_to(route, &())
+    }
+}
+
+impl LongLayout for CellVoltages {
+    const MESSAGE: &'static str = "cell_voltages";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 96;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 48));
+    const BYTES: fn(usize) -> usize = |elements| Self::VOLTAGE.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::VOLTAGE.fitting(data.len());
+        Self { voltage_v: Self::VOLTAGE.read_some(data, count, Signal::decode) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::VOLTAGE.write_some(&message.voltage_v, payload, Signal::encode);
+}
+
+/// A part of [`CellVoltages`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellVoltagesPart {
+    /// Number of the frame: byte 0, `0..=16`, raw 255 is `invalid`. Section 6.2, 6.3.
+    ///
+    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, by a model for each;
+    /// numbers up to 16 for voltages", because devices are widely reported to begin with 1; a frame 0, or
+    /// one whose number is the number of frames, shows which it is.
+    pub part: u8,
+    /// Voltage of a cell in V: bytes 1..2 to bytes 5..6, steps of 0.001 V.
+    ///
+    /// A frame has three; if frames count from 0, frame n has the cells 3n + 1 to 3n + 3; if they count
+    /// from 1, 3n - 2 to 3n.
+    pub voltage_v: [f64; 3],
+}
+
+impl CellVoltagesPart {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 16).specials(&[(255, "invalid")]);
     /// The value of `part` that stands for `invalid`.
@@ -1245,15 +1320,9 @@ impl CellVoltages {
     pub const VOLTAGE_3: Signal<u16, f64> = Signal::new("voltage_3", Place::bytes(5, 6)).unit("V").scale(1, 1000);
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("cell_voltages").id(Identifier::COMMAND, 0x95);
-
-    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
-    #[inline(always)]
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.inlined_request_to(route, &())
-    }
 }
 
-impl Layout for CellVoltages {
+impl Layout for CellVoltagesPart {
     const SIGNALS: AnySignals = &[&Self::PART, &Self::VOLTAGE_1, &Self::VOLTAGE_2, &Self::VOLTAGE_3];
     const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     const DECODE: Decode<Self> = |data| Self {
@@ -1270,28 +1339,78 @@ impl Layout for CellVoltages {
     }
 }
 
+impl Parted for CellVoltages {
+    type Protocol = Message;
+    type Part = CellVoltagesPart;
+    type Memory = [u8; 98];
+    const NUMBER: Place = CellVoltagesPart::PART.place();
+    const DATA: Place = Place::bytes(1, 6);
+    const FIRST: Option<u16> = None;
+    const MODEL_FIRSTS: &'static [(u8, u16)] = &[(Model::FramesFrom0 as u8, 0), (Model::FramesFrom1 as u8, 1)];
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::CellVoltagesPart(_) => Said::Part,
+        Message::StatusInformation(_) => Said::Count(StatusInformation::CELL_COUNT.place()),
+        _ => Said::Nothing,
+    };
+}
+
 /// Temperatures, seven in each frame: `command` 0x96. Section 7.1, 7.2.
 /// - [`read`](READ_ACCESS): the battery answers (`point_to_point`).
 /// - Request `18960140#0000000000000000`.
-/// - Reply `18964001#0040413F26284742`: `part` 0, `temperature_1` 24 °C, `temperature_2` 25 °C,
-///   `temperature_3` 23 °C, `temperature_4` -2 °C, `temperature_5` 0 °C, `temperature_6` 31 °C,
-///   `temperature_7` 26 °C.
+/// - Reply of `FRAMES_FROM_0` `18964001#0040413F26284742`: `part` 0, `temperature_1` 24 °C,
+///   `temperature_2` 25 °C, `temperature_3` 23 °C, `temperature_4` -2 °C, `temperature_5` 0 °C,
+///   `temperature_6` 31 °C, `temperature_7` 26 °C.
 ///
 /// As many frames as a seventh of `temperature_count` in `status_information`, rounded up, at most 3.
 ///
-/// Erratum Y16: printed is "nothing about places without a cell or a sensor", used is "values like the
-/// others; the numbers of 5.5 tell which to drop", because no value is left for them: 0x00 is -40 °C
-/// where there is a sensor.
+/// Erratum Y16: printed is "nothing about places without a cell or a sensor", used is "no values, where
+/// the numbers of 5.5 are known; else values like the others", because no value is left for them: 0x00
+/// is -40 °C where there is a sensor.
 ///
 /// Erratum Y17: printed is "16 temperatures in the name of the row, and 21 bytes in 3 frames in the
 /// text", used is "up to 3 frames", because both fit into 3 frames of seven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperatures {
+    /// Temperature in °C: byte 0 to byte 20, 1 to 21 elements, raw 0 is -40 °C.
+    ///
+    /// A frame has seven; if frames count from 0, frame n has the temperatures 7n + 1 to 7n + 7.
+    pub temperature_c: Elements<f64, 21>,
+}
+
+impl Temperatures {
+    /// The elements of `temperature`, to read or write one alone, or to ask for their limits.
+    pub const TEMPERATURE: LongSignal<u8, f64> =
+        LongSignal::new(0, Signal::new("temperature", Place::byte(0)).unit("°C").offset(-40, 1)).every(1);
+
+    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
+    #[inline(always)]
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<TemperaturesPart>, Error> {
+        TemperaturesPart::READ.inlined_request_to(route, &())
+    }
+}
+
+impl LongLayout for Temperatures {
+    const MESSAGE: &'static str = "temperatures";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 21;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 21));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEMPERATURE.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::TEMPERATURE.fitting(data.len());
+        Self { temperature_c: Self::TEMPERATURE.read_some(data, count, Signal::decode) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::TEMPERATURE.write_some(&message.temperature_c, payload, Signal::encode);
+}
+
+/// A part of [`Temperatures`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TemperaturesPart {
     /// Number of the frame: byte 0, `0..=3`. Section 7.2.
     ///
-    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, so numbers up to 16
-    /// for voltages", because devices are widely reported to begin with 1; a frame 0, or one whose number
-    /// is the number of frames, shows which it is.
+    /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, by a model for each;
+    /// numbers up to 16 for voltages", because devices are widely reported to begin with 1; a frame 0, or
+    /// one whose number is the number of frames, shows which it is.
     ///
     /// Erratum Y17: printed is "16 temperatures in the name of the row, and 21 bytes in 3 frames in the
     /// text", used is "up to 3 frames", because both fit into 3 frames of seven.
@@ -1299,13 +1418,13 @@ pub struct Temperatures {
     /// Erratum Y18: printed is "`0xFF` as an invalid number of a frame of 0x95, and nothing of 0x96", used
     /// is "no number of a frame of 0x96, so it gets a note", because nothing else is said.
     pub part: u8,
-    /// Seven temperatures in °C: byte 1 to byte 7, raw 0 is -40 °C.
+    /// Temperature in °C: byte 1 to byte 7, raw 0 is -40 °C.
     ///
-    /// If frames count from 0, frame n has the temperatures 7n + 1 to 7n + 7.
+    /// A frame has seven; if frames count from 0, frame n has the temperatures 7n + 1 to 7n + 7.
     pub temperature_c: [f64; 7],
 }
 
-impl Temperatures {
+impl TemperaturesPart {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 3);
     /// The signal `temperature_1`, to read or write it alone, or to ask for its limits.
@@ -1324,15 +1443,9 @@ impl Temperatures {
     pub const TEMPERATURE_7: Signal<u8, f64> = Signal::new("temperature_7", Place::byte(7)).unit("°C").offset(-40, 1);
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("temperatures").id(Identifier::COMMAND, 0x96);
-
-    /// Builds the request [`read`](READ_ACCESS). Refuses other addressing modes and undocumented addresses.
-    #[inline(always)]
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.inlined_request_to(route, &())
-    }
 }
 
-impl Layout for Temperatures {
+impl Layout for TemperaturesPart {
     const SIGNALS: AnySignals = &[
         &Self::PART,
         &Self::TEMPERATURE_1,
@@ -1368,6 +1481,21 @@ impl Layout for Temperatures {
             && payload.encode(&Self::TEMPERATURE_6, self.temperature_c[5])
             && payload.encode(&Self::TEMPERATURE_7, self.temperature_c[6])
     }
+}
+
+impl Parted for Temperatures {
+    type Protocol = Message;
+    type Part = TemperaturesPart;
+    type Memory = [u8; 22];
+    const NUMBER: Place = TemperaturesPart::PART.place();
+    const DATA: Place = Place::bytes(1, 7);
+    const FIRST: Option<u16> = None;
+    const MODEL_FIRSTS: &'static [(u8, u16)] = &[(Model::FramesFrom0 as u8, 0), (Model::FramesFrom1 as u8, 1)];
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::TemperaturesPart(_) => Said::Part,
+        Message::StatusInformation(_) => Said::Count(StatusInformation::TEMPERATURE_COUNT.place()),
+        _ => Said::Nothing,
+    };
 }
 
 /// Balance of the cells: `command` 0x97. Section 5.6.
@@ -1472,11 +1600,11 @@ pub enum Message {
     /// The request of `cell_voltages` by `read`.
     ReadCellVoltages,
     /// Voltages of the cells, three in each frame.
-    CellVoltages(CellVoltages),
+    CellVoltagesPart(CellVoltagesPart),
     /// The request of `temperatures` by `read`.
     ReadTemperatures,
     /// Temperatures, seven in each frame.
-    Temperatures(Temperatures),
+    TemperaturesPart(TemperaturesPart),
     /// The request of `balance_state` by `read`.
     ReadBalanceState,
     /// Balance of the cells.
@@ -1501,6 +1629,13 @@ impl Message {
     #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
+    }
+
+    /// Recognises a frame of a device model: of messages that look the same, the one that it has.
+    /// Says why if there is none.
+    #[inline]
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
+        Received::decode_for(model, frame)
     }
 }
 
@@ -1560,8 +1695,8 @@ impl Protocol for Message {
                 Self::ReadStatusInformation,
                 Self::StatusInformation(frame.values()),
             ),
-            0x95 => frame.pair(&CellVoltages::READ, Self::ReadCellVoltages, Self::CellVoltages(frame.values())),
-            0x96 => frame.pair(&Temperatures::READ, Self::ReadTemperatures, Self::Temperatures(frame.values())),
+            0x95 => frame.pair(&CellVoltagesPart::READ, Self::ReadCellVoltages, Self::CellVoltagesPart(frame.values())),
+            0x96 => frame.pair(&TemperaturesPart::READ, Self::ReadTemperatures, Self::TemperaturesPart(frame.values())),
             0x97 => frame.pair(&BalanceState::READ, Self::ReadBalanceState, Self::BalanceState(frame.values())),
             0x98 => frame.pair(&FailureStatus::READ, Self::ReadFailureStatus, Self::FailureStatus(frame.values())),
             _ => frame.unknown(),
@@ -1583,8 +1718,8 @@ impl Protocol for Message {
             Self::TemperatureExtremes(message) => task.run(message),
             Self::ChargeState(message) => task.run(message),
             Self::StatusInformation(message) => task.run(message),
-            Self::CellVoltages(message) => task.run(message),
-            Self::Temperatures(message) => task.run(message),
+            Self::CellVoltagesPart(message) => task.run(message),
+            Self::TemperaturesPart(message) => task.run(message),
             Self::BalanceState(message) => task.run(message),
             Self::FailureStatus(message) => task.run(message),
             _ => task.run(&()),
@@ -1670,12 +1805,16 @@ pub const MESSAGES: &[Entry<Message>] = &[
         &[("command", 0x94)],
         &[&StatusInformation::READ],
     ),
-    Entry::of::<CellVoltages>(
+    Entry::of::<CellVoltagesPart>(
         "Voltages of the cells, three in each frame",
         &[("command", 0x95)],
-        &[&CellVoltages::READ],
+        &[&CellVoltagesPart::READ],
     ),
-    Entry::of::<Temperatures>("Temperatures, seven in each frame", &[("command", 0x96)], &[&Temperatures::READ]),
+    Entry::of::<TemperaturesPart>(
+        "Temperatures, seven in each frame",
+        &[("command", 0x96)],
+        &[&TemperaturesPart::READ],
+    ),
     Entry::of::<BalanceState>("Balance of the cells", &[("command", 0x97)], &[&BalanceState::READ]),
     Entry::of::<FailureStatus>("Failures", &[("command", 0x98)], &[&FailureStatus::READ]),
 ];

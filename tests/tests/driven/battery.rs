@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use canspec_protocols::daly::{
-    Balance, BalanceState, CellVoltageExtremes, CellVoltages, ChargeState, Connection, FailureStatus, Failures, Frame,
-    InputsOutputs, Message, OperatingState, PackValues, StatusInformation, Target, TemperatureExtremes, Temperatures,
+    Balance, BalanceState, CellVoltageExtremes, CellVoltagesPart, ChargeState, Connection, FailureStatus, Failures,
+    Frame, InputsOutputs, Message, OperatingState, PackValues, StatusInformation, Target, TemperatureExtremes,
+    TemperaturesPart,
 };
 use canspec_runtime::client::{Client, Heard, Step};
 use canspec_runtime::sim::{Answer, Bench, Device, Event, Faults, Random, Rules};
@@ -97,12 +98,14 @@ impl Battery {
             }
             Message::ReadCellVoltages => {
                 let frames = frames(&self.cells_v, 0.0);
-                frames.map(|(part, voltage_v)| Message::CellVoltages(CellVoltages { part, voltage_v })).collect()
+                frames
+                    .map(|(part, voltage_v)| Message::CellVoltagesPart(CellVoltagesPart { part, voltage_v }))
+                    .collect()
             }
             Message::ReadTemperatures => {
                 let frames = frames(&self.temperatures_c, -40.0);
                 frames
-                    .map(|(part, temperature_c)| Message::Temperatures(Temperatures { part, temperature_c }))
+                    .map(|(part, temperature_c)| Message::TemperaturesPart(TemperaturesPart { part, temperature_c }))
                     .collect()
             }
             Message::ReadBalanceState => vec![Message::BalanceState(BalanceState { balance: self.balance })],
@@ -154,8 +157,10 @@ impl Known {
             Message::TemperatureExtremes(extremes) => self.temperatures = Some(extremes),
             Message::BalanceState(BalanceState { balance }) => self.balance = Some(balance),
             Message::FailureStatus(status) => self.failures = Some(status),
-            Message::CellVoltages(CellVoltages { part, voltage_v }) => drop(self.cells_v.insert(part, voltage_v)),
-            Message::Temperatures(Temperatures { part, temperature_c }) => {
+            Message::CellVoltagesPart(CellVoltagesPart { part, voltage_v }) => {
+                drop(self.cells_v.insert(part, voltage_v))
+            }
+            Message::TemperaturesPart(TemperaturesPart { part, temperature_c }) => {
                 self.temperatures_c.insert(part, temperature_c);
             }
             _ => panic!("batteries send no {received:?}"),
