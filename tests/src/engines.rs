@@ -117,7 +117,7 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
 }
 
 fn interpreted(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Report, Problem> {
-    let decoded = interpret::decode(protocol, model, frame).map_err(|problem| match problem.problem {
+    let mut decoded = interpret::decode(protocol, model, frame).map_err(|problem| match problem.problem {
         interpret::Problem::Frame => Problem::Frame,
         interpret::Problem::Foreign => Problem::Foreign,
         interpret::Problem::Identifier => Problem::Identifier,
@@ -126,6 +126,7 @@ fn interpreted(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Re
     })?;
     let message = &protocol.messages[decoded.message];
     let content = interpret::Content::of(protocol, &decoded);
+    decoded.hide_lacking(protocol);
     let selectors = decoded.selectors.iter();
     Ok(Report {
         message: message.name.clone(),

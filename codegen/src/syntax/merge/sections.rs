@@ -4,7 +4,7 @@ use super::Entries;
 use crate::syntax::tree::{Content, NAMING, Node};
 
 /// Keys that hold one item, or a text in place of it.
-const ITEMS: [&str; 5] = ["value", "parts", "number", "counter", "length"];
+const ITEMS: [&str; 6] = ["after_silence", "value", "parts", "number", "counter", "length"];
 
 /// Begins the sections of all items with a name, unless they begin with one of the other names.
 pub fn name(spec: &mut Entries, name: &str, others: &[String]) {
