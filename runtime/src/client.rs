@@ -330,6 +330,21 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         self.add_instead(Entry { period, is_spare, ..entry }).map_err(|Full| NotRepeated::Full)
     }
 
+    /// Returns for how many more requests there is room.
+    pub fn room(&self) -> usize {
+        self.entries.iter().filter(|slot| slot.is_none()).count()
+    }
+
+    /// Returns the module that a request goes to, if it is one.
+    pub(crate) fn node(&self, ticket: Ticket) -> Option<u8> {
+        self.entries.iter().flatten().find(|entry| entry.ticket == ticket)?.node()
+    }
+
+    /// Tests whether a request is [held](Self::hold).
+    pub(crate) fn holds(&self, ticket: Ticket) -> bool {
+        self.entries.iter().flatten().any(|entry| entry.ticket == ticket && entry.is_held())
+    }
+
     /// Returns the modules that are silent.
     #[must_use]
     pub const fn silent(&self) -> &Nodes {

@@ -20,6 +20,11 @@ pub fn has_come(time: u32, now: u32) -> bool {
     now.wrapping_sub(time) < 1 << 31
 }
 
+/// Returns how many milliseconds are left until a time, or 0 if it has come.
+pub fn time_left(until: u32, now: u32) -> u32 {
+    if has_come(until, now) { 0 } else { until.wrapping_sub(now) }
+}
+
 /// Tests whether so much time has passed since a time, which may lie ahead.
 pub fn has_lasted(since: u32, patience: u32, now: u32) -> bool {
     has_come(since, now) && now.wrapping_sub(since) >= patience
@@ -110,6 +115,11 @@ impl Steady {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_time_is_left_of_what_has_come() {
+        assert_eq!([(7, 7), (6, 7), (8, 7), (3, u32::MAX)].map(|(until, now)| time_left(until, now)), [0, 0, 1, 4]);
+    }
 
     #[test]
     fn a_clock_that_goes_back_counts_as_no_time_passed() {

@@ -1,7 +1,7 @@
 //! The library behind the codecs that canspec generates: places, scaling, signals, frames, filters
 //! and addressing.
 //!
-//! No allocation, no unsafe code, no dependency but [`embedded_can`](https://docs.rs/embedded-can).
+//! No allocation, no unsafe code, no dependency but [`embedded_can`](https://docs.rs/embedded-can) and its `nb`.
 //!
 //! # Features
 //!
@@ -61,6 +61,7 @@ pub mod schedule;
 mod set;
 mod signal;
 pub mod sim;
+pub mod station;
 mod status;
 #[cfg(test)]
 mod tests;

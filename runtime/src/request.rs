@@ -184,6 +184,11 @@ impl<P, R> Request<P, R> {
         Request { frame, exchange, who, reply, refusal, carried: PhantomData }
     }
 
+    /// Returns the same request, to which no frame counts as an answer. So it waits for none, and none waits for it.
+    pub(crate) fn unanswered(self) -> Self {
+        Self { who: Who::Nobody, reply: IdFilter::NONE, refusal: IdFilter::NONE, ..self }
+    }
+
     /// Tests whether a frame can answer both requests.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let answers = |request: &Self| [request.replies().filter(), request.refusal()];

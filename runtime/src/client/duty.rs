@@ -104,6 +104,11 @@ impl Duty {
         confirms
     }
 
+    /// Returns the last of the requests, if there is one.
+    pub(crate) const fn last(&self) -> Option<Ticket> {
+        self.last
+    }
+
     /// Knows nothing of the module any more, since it is silent or starts. What is held goes on, and is to be confirmed
     /// anew.
     pub const fn forget(&mut self) {

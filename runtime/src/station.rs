@@ -1,0 +1,498 @@
+//! A station: it controls charging modules in groups, of any protocol that has the quantities.
+//!
+//! It has no input and output of its own, and no clock. The program gives it every frame with the time at which it was
+//! received, and then polls it until it waits:
+//!
+//! ```
+//! use canspec_runtime::station::{Station, Step};
+//! use canspec_runtime::{Addressed, Frame, Quantities};
+//!
+//! fn turn<P: Quantities + Addressed>(
+//!     station: &mut Station<P, 8, 2, 64>,
+//!     now: u32,
+//!     send: impl Fn(Frame) -> bool,
+//!     received: impl IntoIterator<Item = (Frame, u32)>,
+//! ) -> u32 {
+//!     for (frame, at) in received {
+//!         station.handle(&frame, at);
+//!     }
+//!     loop {
+//!         match station.poll(now) {
+//!             Step::Send { frame, ticket } if !send(frame) => station.not_sent(ticket, now),
+//!             Step::Send { .. } => {}
+//!             Step::Event(event) => println!("{event:?}"),
+//!             Step::Wait(until) => break until,
+//!         }
+//!     }
+//! }
+//! ```
+//!
+//! # What it promises
+//!
+//! - *Set-points come first.* A module is switched on only after the echo of its set-point has agreed, in each renewal
+//!   anew. So a module that restarts is not switched on without one.
+//! - *A stop cannot fail.* It goes to the group first, and then to each module, again and again, also to those that do
+//!   not answer. There is always room for it. [`is_off`](Station::is_off) tells whether each module has said since
+//!   then that it is off.
+//! - *What the program wants comes first after silence.* Some modules come back as they were as soon as they
+//!   [hear anything](crate::AfterSilence). So a module that has not answered in time is not read. It is told what it
+//!   is to do until it answers.
+//! - *Everything known has an age.* What was said longer ago than [`valid`](Settings::valid) does not count.
+//! - *No limit is passed.* Each output goes through the [`Limits`].
+//!
+//! Frames that the program itself has sent must not be handed over.
+
+mod drive;
+mod event;
+mod hear;
+mod known;
+mod module;
+mod request;
+mod round;
+mod settings;
+#[cfg(test)]
+mod tests;
+
+use crate::client::{Bus, Client, Heard, Output, Step as Asked, Ticket};
+use crate::clock::{Steady, has_come};
+use crate::{Addressed, AfterSilence, Protocol, Quantities, Received, Request, Severity};
+pub use drive::{Drive, Driver, NonBlocking, pump};
+pub use event::{Event, Rival, Step};
+pub use known::Known;
+use known::known;
+use module::{Aim, Module, Task};
+pub use settings::{Beyond, Found, Limits, Refused, Rivals, SetPoint, Settings, Unfit};
+
+/// The longest time in milliseconds that a station counts, which is six days.
+const LONGEST: u32 = 1 << 29;
+
+/// A group of modules.
+#[derive(Clone, Copy, Debug)]
+struct Group<T> {
+    number: u8,
+    /// What addresses all of its modules, if anything does.
+    target: Option<T>,
+    task: Task,
+    /// Whether a module can hear what goes to it.
+    is_heard: bool,
+    /// Its stop, which goes to all of its modules.
+    stop: Option<Ticket>,
+}
+
+/// Controls the modules at `M` addresses, in `G` groups, with room for `R` requests.
+///
+/// `R` must be at least [`ROOM`](Self::ROOM), which is tested while the program is compiled.
+#[derive(Clone, Copy, Debug)]
+pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> {
+    settings: Settings,
+    client: Client<P, R, G>,
+    modules: [Module<P>; M],
+    groups: [Group<P::Target>; G],
+    /// The task of modules without a group.
+    others: Task,
+    has_emergency: bool,
+    clock: Steady,
+    news: News,
+    /// When there is something to do, if no frame comes before. None means at once.
+    next: Option<u32>,
+}
+
+/// What the program is to be told of the bus.
+#[derive(Clone, Copy, Debug)]
+struct News {
+    clock_back: u32,
+    rival: Option<Rival>,
+    is_kept_on: bool,
+    may_wake: bool,
+}
+
+impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
+    /// The least room for requests: what each module reads and sets, its group, and a stop of each module and group.
+    pub const ROOM: usize = M * (request::each_round::<P>() + 2) + G;
+
+    /// Returns a station that looks for modules at `addresses`. Each group has its number, and what addresses all of
+    /// its modules, if the document has that.
+    ///
+    /// Modules of protocols with a [group](crate::Quantity::GROUP) say which one they are in. Others are
+    /// [assigned](Self::assign) by the program.
+    ///
+    /// # Errors
+    ///
+    /// Refuses
+    /// - a round that is too short for these modules or for an answer, or longer than a third of the watchdog,
+    /// - values that count for less than a round, or longer than the watchdog,
+    /// - an address at which no module is switched off, as the document says,
+    /// - what is to be adopted if it is beyond a limit, or the document does not allow it.
+    pub fn new(settings: Settings, addresses: [u8; M], groups: [(u8, Option<P::Target>); G]) -> Result<Self, Unfit> {
+        const { assert!(R >= Self::ROOM, "the station needs more room for requests: at least `Station::ROOM`") }
+        fits_time::<P>(&settings, M)?;
+        let mut may_wake = settings.found == Found::Watch;
+        for node in addresses {
+            let target = P::module(node.into()).ok_or(Unfit::Address(node))?;
+            let off = request::switch_off::<P>(&settings, target).map_err(Unfit::Document)?;
+            off.ok_or(Unfit::Address(node)).map(drop)?;
+            if let Found::Adopt(point) = settings.found {
+                settings.limits.allow(point).map_err(Unfit::Beyond)?;
+                request::deliver::<P>(&settings, target, point).map_err(Unfit::Document)?;
+                // What cannot be set alone is read first.
+                may_wake |= request::prepare::<P>(&settings, target, point).iter().all(Option::is_none);
+            }
+        }
+        let client = Client::new(settings.pace);
+        let mut station = Self {
+            settings,
+            client: settings.model.map_or(client, |model| client.for_model(model)),
+            modules: addresses.map(Module::new),
+            groups: groups.map(|(number, target)| Group {
+                number,
+                target,
+                task: Task::AsFound,
+                is_heard: false,
+                stop: None,
+            }),
+            others: Task::AsFound,
+            has_emergency: false,
+            clock: Steady::NEW,
+            news: News { clock_back: 0, rival: None, is_kept_on: false, may_wake: may_wake && can_wake::<P>() },
+            next: None,
+        };
+        station.know_members();
+        Ok(station)
+    }
+
+    /// Returns the addresses of the modules that answer.
+    pub fn modules(&self) -> impl Iterator<Item = u8> {
+        self.modules.iter().filter(|module| module.heard.is_some()).map(|module| module.node)
+    }
+
+    /// Returns the group of a module, if it has said it, or the program.
+    pub fn group(&self, node: u8) -> Option<u8> {
+        self.module(node)?.group
+    }
+
+    /// Returns what is known of the output of a module. It is only off if it has said so since it confirmed that it is
+    /// to be off, and not longer ago than values count.
+    pub fn output(&self, node: u8, now: u32) -> Output {
+        let now = self.clock.steady(now);
+        self.module(node).map_or(Output::Unknown, |module| module.output(self.settings.valid, now))
+    }
+
+    /// Returns the voltage at the output of a module, in mV.
+    pub fn voltage_mv(&self, node: u8, now: u32) -> Known<i32> {
+        self.known(self.module(node).and_then(|module| module.voltage_mv), now)
+    }
+
+    /// Returns the current at the output of a module, in mA.
+    pub fn current_ma(&self, node: u8, now: u32) -> Known<i32> {
+        self.known(self.module(node).and_then(|module| module.current_ma), now)
+    }
+
+    /// Returns the worst of what a module reports. It is `None` if it reports nothing that has a severity.
+    pub fn severity(&self, node: u8, now: u32) -> Known<Option<Severity>> {
+        let status = self.module(node).and_then(|module| module.status);
+        let worst = status.map(|said| known::Said { value: module::severity(&said.value), at: said.at });
+        self.known(worst, now)
+    }
+
+    /// Returns what a module has said of its state last, for [`Received::conditions`].
+    pub fn status(&self, node: u8) -> Option<&Received<P>> {
+        self.module(node)?.status.as_ref().map(|said| &said.value)
+    }
+
+    /// Returns what a module is told to deliver now, if it is.
+    pub fn told(&self, node: u8) -> Option<SetPoint> {
+        match self.module(node)?.aim {
+            Aim::Output { point, .. } => Some(point),
+            Aim::Off | Aim::None => None,
+        }
+    }
+
+    /// Tests whether a group is known to be off. It has modules, and each has said so since it was stopped. What was
+    /// said longer ago than values count does not count.
+    pub fn is_off(&self, group: u8, now: u32) -> bool {
+        let now = self.clock.steady(now);
+        let mut members = self.members(group).peekable();
+        members.peek().is_some() && members.all(|module| module.output(self.settings.valid, now) == Output::Off)
+    }
+
+    /// Tests whether a contactor at the output of a group may open. Each of its modules is known to be off, and has
+    /// measured less than [`open_mv`](Limits::open_mv).
+    pub fn is_safe_to_open(&self, group: u8, now: u32) -> bool {
+        let Settings { valid, limits, .. } = self.settings;
+        let at = self.clock.steady(now);
+        let is_low = |module: &Module<P>| {
+            let voltage = module.voltage_mv.and_then(|said| said.fresh(valid, at));
+            voltage.is_some_and(|voltage| voltage.saturating_abs() < limits.open_mv)
+        };
+        self.is_off(group, now) && self.members(group).all(is_low)
+    }
+
+    /// Lets each module of a group deliver. Its current comes to a greater one step by step. To say it again changes
+    /// nothing. A new set-point is sent when the last one is in effect, or after a round, or at once if it is lower.
+    ///
+    /// # Errors
+    ///
+    /// Refuses an unknown group, an output beyond a limit, and what the document does not allow. The group then goes on
+    /// as before. It also refuses to deliver until an emergency has been [ended](Self::end_emergency).
+    pub fn deliver(&mut self, group: u8, point: SetPoint, now: u32) -> Result<(), Refused> {
+        let index = self.place_of(group)?;
+        if self.has_emergency {
+            return Err(Refused::Emergency);
+        }
+        self.settings.limits.allow(point).map_err(Refused::Beyond)?;
+        let targets = self.modules.iter().filter_map(|module| P::module(module.node.into()));
+        for target in targets {
+            request::deliver::<P>(&self.settings, target, point).map_err(Refused::Output)?;
+        }
+        self.take(now);
+        self.begin(index, Task::Deliver(point));
+        Ok(())
+    }
+
+    /// Switches a group off, again and again, until the program lets it deliver. What cannot be sent now is sent later.
+    ///
+    /// # Errors
+    ///
+    /// Refuses an unknown group.
+    pub fn stop(&mut self, group: u8, now: u32) -> Result<(), Refused> {
+        let index = self.place_of(group)?;
+        self.take(now);
+        self.begin(index, Task::Stop);
+        Ok(())
+    }
+
+    /// Only reads a group, and leaves it as it is, until the program says more. That can
+    /// [wake](Event::MayWake) modules that were not heard for long.
+    ///
+    /// # Errors
+    ///
+    /// Refuses an unknown group, and to watch until an emergency has been [ended](Self::end_emergency).
+    pub fn watch(&mut self, group: u8, now: u32) -> Result<(), Refused> {
+        let index = self.place_of(group)?;
+        if self.has_emergency {
+            return Err(Refused::Emergency);
+        }
+        self.take(now);
+        self.news.may_wake |= can_wake::<P>();
+        self.begin(index, Task::Watch);
+        Ok(())
+    }
+
+    /// Stops all groups and all modules, before anything else. None delivers until the emergency has
+    /// [ended](Self::end_emergency).
+    pub fn emergency(&mut self, now: u32) {
+        self.take(now);
+        self.has_emergency = true;
+        self.others = Task::Stop;
+        self.modules.iter_mut().for_each(|module| module.due = None);
+        (0..G).for_each(|index| self.begin(index, Task::Stop));
+    }
+
+    /// Ends an emergency. All groups stay stopped until the program lets them deliver.
+    pub fn end_emergency(&mut self) {
+        self.has_emergency = false;
+    }
+
+    /// Puts a module into a group, whatever it says of its group itself, or into none.
+    ///
+    /// # Errors
+    ///
+    /// Refuses an unknown address or group, and to take a module out of a group while it answers and is not known to be
+    /// off.
+    pub fn assign(&mut self, node: u8, group: Option<u8>, now: u32) -> Result<(), Refused> {
+        group.map_or(Ok(()), |group| self.place_of(group).map(|_| ()))?;
+        let now = self.take(now);
+        let valid = self.settings.valid;
+        let module = self.modules.iter_mut().find(|module| module.node == node).ok_or(Refused::Address(node))?;
+        if module.group == group {
+            module.is_assigned = true;
+            return Ok(());
+        }
+        if module.group.is_some() && module.heard.is_some() && module.output(valid, now) != Output::Off {
+            return Err(Refused::NotOff);
+        }
+        (module.is_assigned, module.due) = (true, None);
+        self.join(node, group);
+        Ok(())
+    }
+
+    /// Takes a frame from the bus, and when it was received. The driver may have kept it for a while.
+    pub fn handle(&mut self, frame: &impl embedded_can::Frame, received_at: u32) {
+        self.next = None;
+        let at = self.clock.steady(received_at);
+        match self.client.handle(frame, at) {
+            Heard::Answer { ticket, received } => self.answered(ticket, &received, at),
+            Heard::Late { received, .. } => self.answers(&received, at),
+            Heard::NotInEffect { ticket, received } | Heard::Refusal { ticket, received } => {
+                self.refused(ticket, &received, at);
+            }
+            Heard::Twice { ticket, received } => {
+                self.answers(&received, at);
+                if let Some(module) = self.module_of(&received) {
+                    module.answered_twice(ticket, &received);
+                }
+            }
+            Heard::Starting { received, .. } => {
+                self.answers(&received, at);
+                if let Some(module) = self.module_of(&received) {
+                    module.forget();
+                    module.told.starting.begin();
+                }
+            }
+            Heard::ShortRefusal(ticket) | Heard::Broken(ticket) => self.speaks(ticket, at),
+            Heard::Rival(received) => self.overheard(&received),
+            // What it reports by itself does not show that it has heard anything.
+            Heard::Other(received) => self.module_of(&received).into_iter().for_each(|module| {
+                module.measured(&received, at);
+            }),
+            Heard::Unrecognised(_) => {}
+        }
+    }
+
+    /// Says what to do next. Call it until it waits, after all frames from the bus were handled.
+    pub fn poll(&mut self, now: u32) -> Step {
+        let program = now;
+        let now = self.take(now);
+        if self.next.is_some_and(|next| !has_come(next, now)) {
+            return Step::Wait(self.clock.of_program(self.next.unwrap_or(now)));
+        }
+        self.next = None;
+        self.stop_groups(now);
+        (0..M).for_each(|place| self.look_after(place, now));
+        if let Some(event) = self.event(now) {
+            return Step::Event(event);
+        }
+        loop {
+            match self.client.poll(now) {
+                Asked::Send { frame, ticket } => {
+                    self.modules.iter_mut().for_each(|module| module.sent(ticket));
+                    return Step::Send { frame, ticket };
+                }
+                Asked::Lost(ticket) => self.modules.iter_mut().for_each(|module| module.lost(ticket)),
+                Asked::Done(_) | Asked::Missing { .. } | Asked::Silent(_) | Asked::Back(_) | Asked::ClockBack(_) => {}
+                Asked::Wait(until) => {
+                    let next = self.deadline(until, now);
+                    self.next = Some(next);
+                    return Step::Wait(program.wrapping_add(next.wrapping_sub(now)));
+                }
+            }
+        }
+    }
+
+    /// Takes back a frame that the driver did not take. It counts as no try, and is sent again after the gap. Call it
+    /// before the next [`poll`](Self::poll).
+    pub fn not_sent(&mut self, ticket: Ticket, now: u32) {
+        let now = self.take(now);
+        self.client.not_sent(ticket, now);
+        self.modules.iter_mut().for_each(|module| module.not_sent(ticket));
+        self.next = None;
+    }
+
+    /// Notes that the bus is on or off. While it is off, nothing is sent, and no request is lost. A module that was not
+    /// heard in time meanwhile is told first what the program wants of it.
+    pub fn bus(&mut self, bus: Bus, now: u32) {
+        let now = self.take(now);
+        self.client.bus(bus, now);
+        self.next = None;
+    }
+
+    /// Takes the time of the program's clock.
+    fn take(&mut self, now: u32) -> u32 {
+        let now = self.clock.pass(now);
+        if let Some(back) = self.clock.went_back() {
+            self.news.clock_back = self.news.clock_back.saturating_add(back);
+            self.next = None;
+        }
+        now
+    }
+
+    fn known<T: Copy>(&self, said: Option<known::Said<T>>, now: u32) -> Known<T> {
+        match known(said, self.settings.valid, self.clock.steady(now)) {
+            Known::Stale { value, since } => Known::Stale { value, since: self.clock.of_program(since) },
+            known @ (Known::Fresh(_) | Known::Unknown) => known,
+        }
+    }
+
+    fn module(&self, node: u8) -> Option<&Module<P>> {
+        self.modules.iter().find(|module| module.node == node)
+    }
+
+    fn module_of(&mut self, received: &Received<P>) -> Option<&mut Module<P>> {
+        let node = received.node().filter(|_| !received.is_to_module());
+        self.modules.iter_mut().find(|module| node == Some(module.node.into()))
+    }
+
+    fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
+        self.modules.iter().filter(move |module| module.group == Some(group))
+    }
+
+    fn place_of(&self, number: u8) -> Result<usize, Refused> {
+        self.groups.iter().position(|group| group.number == number).ok_or(Refused::Group(number))
+    }
+
+    /// Begins a task of a group.
+    fn begin(&mut self, index: usize, task: Task) {
+        let Self { client, modules, .. } = self;
+        let Some(group) = self.groups.get_mut(index).filter(|group| group.task != task) else { return };
+        group.task = task;
+        self.next = None;
+        group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
+        for module in modules.iter_mut().filter(|module| module.group == Some(group.number)) {
+            // Faster than it is in effect, it would never be switched on.
+            let waits = !module.is_met && is_raised(&module.aim, task);
+            module.due = module.due.filter(|_| waits);
+        }
+    }
+
+    /// Sends the stops of groups that are not sent yet.
+    fn stop_groups(&mut self, now: u32) {
+        let Self { client, groups, settings, .. } = self;
+        let waiting =
+            |group: &&mut Group<P::Target>| group.task == Task::Stop && group.is_heard && group.stop.is_none();
+        for group in groups.iter_mut().filter(waiting) {
+            let request = group.target.and_then(|target| request::switch_off::<P>(settings, target).ok()?);
+            // What is asked of each module shows whether it is off. Without room, the group is stopped later.
+            let unanswered = request.map(Request::unanswered);
+            group.stop = unanswered.and_then(|request| client.every(settings.round, request, now).ok());
+            group.stop.into_iter().for_each(|ticket| client.hurry(ticket, now));
+        }
+    }
+}
+
+/// Tests whether nothing about an output is to fall.
+fn is_raised(aim: &Aim, task: Task) -> bool {
+    match (aim, task) {
+        (Aim::Output { point, .. }, Task::Deliver(new)) => {
+            new.voltage_mv >= point.voltage_mv && new.current_ma >= point.current_ma
+        }
+        _ => false,
+    }
+}
+
+/// Tests whether modules can come back as they were when they hear anything, or whether the document does not say it.
+const fn can_wake<P: Protocol>() -> bool {
+    matches!(P::AFTER_SILENCE, AfterSilence::Resumes | AfterSilence::Starts | AfterSilence::Unknown)
+}
+
+/// Tests whether the times of a station fit the document.
+fn fits_time<P: Quantities>(settings: &Settings, modules: usize) -> Result<(), Unfit> {
+    let Settings { pace, round, valid, .. } = *settings;
+    let watchdog = watchdog::<P>().unwrap_or(LONGEST);
+    let frames = u32::try_from(modules.saturating_mul(request::each_round::<P>())).unwrap_or(u32::MAX);
+    // A request that nobody answers ends before the next round.
+    let ends = pace.wait.saturating_add(pace.late).saturating_add(1);
+    let (least, most) = (frames.saturating_mul(pace.gap).max(ends), watchdog / 3);
+    if round < least || round > most {
+        return Err(Unfit::Round { least, most });
+    }
+    if valid < round || valid > watchdog {
+        return Err(Unfit::Valid { least: round, most: watchdog });
+    }
+    Ok(())
+}
+
+/// Returns the silence after which a module acts by itself, in milliseconds.
+fn watchdog<P: Protocol>() -> Option<u32> {
+    let shortest = P::TIMING.watchdog?.shortest.as_millis();
+    Some(u32::try_from(shortest).unwrap_or(LONGEST).min(LONGEST))
+}

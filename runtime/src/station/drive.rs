@@ -1,0 +1,153 @@
+//! What carries the frames of a station: a driver that does not block, or asynchronous functions.
+
+use embedded_can::nb::Can;
+
+use super::{Event, Station, Step};
+use crate::clock::time_left;
+use crate::frame::classic;
+use crate::{Addressed, Frame, Quantities};
+
+/// A driver of a bus that does not block.
+///
+/// It must not give the frames back that it has sent itself.
+pub trait Driver {
+    /// What fails.
+    type Error;
+
+    /// Sends a frame, or returns `false` if the driver does not take it now: it is full, or the bus is away.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the driver is of no use any more.
+    fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error>;
+
+    /// Returns the next frame that has come, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the driver is of no use any more.
+    fn receive(&mut self) -> Result<Option<Frame>, Self::Error>;
+}
+
+/// A driver that implements [`embedded_can::nb::Can`], as those of microcontrollers do.
+#[derive(Clone, Copy, Debug)]
+pub struct NonBlocking<C>(pub C);
+
+impl<C: Can<Frame: embedded_can::Frame>> Driver for NonBlocking<C> {
+    type Error = C::Error;
+
+    fn send(&mut self, frame: &Frame) -> Result<bool, C::Error> {
+        // A frame type that cannot hold a classic frame carries none.
+        let Some(frame) = frame.to() else { return Ok(false) };
+        match self.0.transmit(&frame) {
+            // What the driver drops for a frame of more weight is lost, as on the bus. It is sent again.
+            Ok(_) => Ok(true),
+            Err(nb::Error::WouldBlock) => Ok(false),
+            Err(nb::Error::Other(error)) => Err(error),
+        }
+    }
+
+    fn receive(&mut self) -> Result<Option<Frame>, C::Error> {
+        match self.0.receive() {
+            Ok(frame) => Ok(classic(&frame)),
+            Err(nb::Error::WouldBlock) => Ok(None),
+            Err(nb::Error::Other(error)) => Err(error),
+        }
+    }
+}
+
+/// Carries the frames of a station by a driver.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<D> {
+    driver: D,
+    /// When all was handed over that had come. What comes after that is not older.
+    since: Option<u32>,
+}
+
+impl<D: Driver> Drive<D> {
+    /// Returns what carries frames by a driver.
+    pub const fn new(driver: D) -> Self {
+        Self { driver, since: None }
+    }
+
+    /// Returns the driver.
+    pub const fn driver(&mut self) -> &mut D {
+        &mut self.driver
+    }
+
+    /// Hands over what has come, sends what is due, and tells what has happened. Returns when it is to be called again
+    /// at the latest, if nothing comes before.
+    ///
+    /// No driver says when a frame came. So each counts as old as it can be. If the program stands still for long, what
+    /// the driver has kept meanwhile does not count as new.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the driver does. What was not sent is sent later.
+    pub fn turn<P, const M: usize, const G: usize, const R: usize>(
+        &mut self,
+        station: &mut Station<P, M, G, R>,
+        clock: impl Fn() -> u32,
+        mut tell: impl FnMut(&mut Station<P, M, G, R>, Event),
+    ) -> Result<u32, D::Error>
+    where
+        P: Quantities + Addressed,
+    {
+        loop {
+            let now = clock();
+            let since = self.since.replace(now).unwrap_or(now);
+            while let Some(frame) = self.driver.receive()? {
+                station.handle(&frame, since);
+            }
+            match station.poll(now) {
+                Step::Send { ticket, frame } => {
+                    let sent = self.driver.send(&frame);
+                    if !matches!(sent, Ok(true)) {
+                        station.not_sent(ticket, now);
+                    }
+                    sent?;
+                }
+                Step::Event(event) => tell(station, event),
+                Step::Wait(until) => return Ok(until),
+            }
+        }
+    }
+}
+
+/// Carries the frames of a station by asynchronous functions, for ever.
+///
+/// `send` returns whether the driver has taken the frame. `receive` waits for a frame, for this number of milliseconds at
+/// most. With 0 it returns only a frame that has come. With embassy it is
+/// `with_timeout(Duration::from_millis(wait.into()), can.read())`, and with tokio the same by `timeout`. It must not
+/// give frames back that the program has sent itself.
+pub async fn pump<P, const M: usize, const G: usize, const R: usize>(
+    station: &mut Station<P, M, G, R>,
+    clock: impl Fn() -> u32,
+    mut send: impl AsyncFnMut(&Frame) -> bool,
+    mut receive: impl AsyncFnMut(u32) -> Option<Frame>,
+    mut tell: impl FnMut(&mut Station<P, M, G, R>, Event),
+) where
+    P: Quantities + Addressed,
+{
+    let mut since = clock();
+    loop {
+        let now = clock();
+        while let Some(frame) = receive(0).await {
+            station.handle(&frame, since);
+        }
+        since = now;
+        match station.poll(now) {
+            Step::Send { ticket, frame } => {
+                if !send(&frame).await {
+                    station.not_sent(ticket, now);
+                }
+            }
+            Step::Event(event) => tell(station, event),
+            Step::Wait(until) => {
+                if let Some(frame) = receive(time_left(until, clock())).await {
+                    station.handle(&frame, since);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What a station hears.
+
+use super::module::{Aim, Task};
+use super::{Found, Rival, Rivals, Station};
+use crate::client::{Nodes, Ticket};
+use crate::{Addressed, Quantities, Quantity, Received};
+
+impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
+    /// Takes an answer.
+    pub(super) fn answered(&mut self, ticket: Ticket, received: &Received<P>, at: u32) {
+        self.answers(received, at);
+        let Some(place) = self.place(received) else { return };
+        let Some(module) = self.modules.get_mut(place) else { return };
+        if module.answered(ticket, received, at) {
+            self.tell_anew(place);
+        }
+    }
+
+    /// Notes that a module has answered something, and takes its group.
+    pub(super) fn answers(&mut self, received: &Received<P>, at: u32) {
+        let Some(module) = self.module_of(received) else { return };
+        module.answers(at);
+        let said = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok());
+        let Some(group) = said else { return };
+        module.has_group = true;
+        if !module.is_assigned && module.group != Some(group) {
+            let node = module.node;
+            self.join(node, Some(group));
+        }
+    }
+
+    /// Takes a refusal, or an answer that says something else.
+    pub(super) fn refused(&mut self, ticket: Ticket, received: &Received<P>, at: u32) {
+        self.answers(received, at);
+        let is_held = self.client.holds(ticket);
+        let Some(module) = self.module_of(received) else { return };
+        module.lost(ticket);
+        if is_held {
+            module.told.unmet.begin();
+        }
+    }
+
+    /// Notes that a module has answered something that cannot be read.
+    pub(super) fn speaks(&mut self, ticket: Ticket, at: u32) {
+        let node = self.client.node(ticket);
+        let Some(module) = self.modules.iter_mut().find(|module| node == Some(module.node)) else { return };
+        module.lost(ticket);
+        module.answers(at);
+    }
+
+    /// Puts a module into a group.
+    pub(super) fn join(&mut self, node: u8, group: Option<u8>) {
+        let Some(place) = self.modules.iter().position(|module| module.node == node) else { return };
+        self.tell_anew(place);
+        self.modules.get_mut(place).into_iter().for_each(|module| module.group = group);
+        self.know_members();
+    }
+
+    /// Tells the client which modules hear what goes to a group. What nobody hears is not sent.
+    pub(super) fn know_members(&mut self) {
+        let Self { client, modules, groups, .. } = self;
+        for group in groups {
+            let members: Nodes =
+                modules.iter().filter(|module| module.hears(group.number)).map(|module| module.node).collect();
+            group.is_heard = !members.is_empty();
+            if !group.is_heard {
+                group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
+            }
+            // There is room for each group.
+            let Some(target) = group.target else { continue };
+            let _ = client.members(target, members);
+        }
+    }
+
+    /// Ends what a module is told, and tells it anew.
+    fn tell_anew(&mut self, place: usize) {
+        let Some(module) = self.modules.get_mut(place) else { return };
+        module.duty.end(&mut self.client);
+        (module.aim, module.due) = (Aim::None, None);
+    }
+
+    /// Takes a request of another controller. One that only reads is no rival.
+    pub(super) fn overheard(&mut self, received: &Received<P>) {
+        let set = |quantity| received.setting(quantity);
+        let rival = Rival {
+            node: received.node().and_then(|node| u8::try_from(node).ok()),
+            voltage_mv: set(Quantity::OUTPUT_VOLTAGE),
+            current_ma: set(Quantity::OUTPUT_CURRENT),
+            is_on: set(Quantity::DELIVERING).map(|is_on| is_on != 0),
+        };
+        if (rival.voltage_mv, rival.current_ma, rival.is_on) == (None, None, None) {
+            return;
+        }
+        self.news.rival = Some(rival);
+        self.give_way();
+        if rival.is_on == Some(true) {
+            self.stop_anew();
+        }
+    }
+
+    /// Leaves what delivers to another controller.
+    fn give_way(&mut self) {
+        let adopts = matches!(self.settings.found, Found::Adopt(_));
+        let task = match self.settings.rivals {
+            Rivals::Leave => Task::Leave,
+            Rivals::Watch => Task::Watch,
+        };
+        let gives_way = |known: Task| matches!(known, Task::Deliver(_)) || known == Task::AsFound && adopts;
+        let tasks = self.groups.iter_mut().map(|group| &mut group.task).chain([&mut self.others]);
+        let mut has_given = false;
+        for known in tasks.filter(|known| gives_way(**known)) {
+            *known = task;
+            has_given = true;
+        }
+        self.news.is_kept_on |= has_given && task == Task::Watch;
+        if has_given {
+            self.modules.iter_mut().for_each(|module| module.due = None);
+        }
+    }
+
+    /// Sends what stops modules again, as another controller may have switched them on.
+    fn stop_anew(&mut self) {
+        for group in &mut self.groups {
+            group.stop.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
+        }
+        let are_off = self.modules.map(|module| module.aim == Aim::Off);
+        let places = are_off.into_iter().enumerate().filter(|(_, is_off)| *is_off);
+        places.for_each(|(place, _)| self.tell_anew(place));
+    }
+
+    fn place(&self, received: &Received<P>) -> Option<usize> {
+        let node = received.node()?;
+        self.modules.iter().position(|module| i32::from(module.node) == node)
+    }
+}

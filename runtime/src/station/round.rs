@@ -1,0 +1,256 @@
+//! What a station asks in each round.
+
+use super::module::{Aim, Conflict, Module, Read, Task};
+use super::{Event, Found, SetPoint, Settings, Station, request, watchdog};
+use crate::client::{Full, NotHeld, Output, Pace};
+use crate::clock::{earlier, has_come, has_lasted};
+use crate::{Addressed, Quantities, Received, Request};
+
+/// How far an echo may differ, in thousandths of a unit. Documents print echoes that differ by 15.
+const TOLERANCE: u32 = 100;
+
+/// What a station wants of a module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Goal {
+    /// Nothing at all.
+    Leave,
+    /// To be read.
+    Read,
+    /// To be off.
+    Off,
+    /// To have an output, and to be on, or to stay on or off as it is.
+    Output { point: SetPoint, is_on: bool },
+}
+
+impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
+    /// Begins the round of a module when it is due, and gives up one that has not answered in time.
+    pub(super) fn look_after(&mut self, place: usize, now: u32) {
+        let Settings { pace, round, .. } = self.settings;
+        let patience = patience::<P>(&self.settings);
+        let Some(module) = self.modules.get_mut(place) else { return };
+        if module.heard.is_some_and(|heard| has_lasted(heard, patience, now)) {
+            self.lose(place);
+        }
+        let Some(module) = self.modules.get_mut(place) else { return };
+        module.expire(now);
+        if module.due.is_some_and(|due| !has_come(due, now)) {
+            return;
+        }
+        module.due = Some(now.wrapping_add(round));
+        if self.ask(place, now).is_err() {
+            // There is room again when no answer to an earlier request can come any more.
+            let soon = now.wrapping_add(pace.wait).wrapping_add(pace.late).wrapping_add(1);
+            self.modules.get_mut(place).into_iter().for_each(|module| module.due = Some(soon));
+        }
+    }
+
+    /// Ends what is asked of a module, as it may act by itself. It is not read until it answers.
+    fn lose(&mut self, place: usize) {
+        self.end(place);
+        let Some(module) = self.modules.get_mut(place) else { return };
+        (module.heard, module.was_on, module.due, module.reached_ma) = (None, None, None, 0);
+        module.conflict = Conflict::None;
+    }
+
+    /// Ends all that is asked of a module.
+    pub(super) fn end(&mut self, place: usize) {
+        let Some(module) = self.modules.get_mut(place) else { return };
+        let reads = module.reads.iter_mut();
+        reads.filter_map(|read| read.ticket.take()).for_each(|ticket| self.client.cancel(ticket));
+        module.duty.end(&mut self.client);
+        module.aim = Aim::None;
+    }
+
+    /// Reads a module and tells it what it is to do. One that does not answer is only told.
+    fn ask(&mut self, place: usize, now: u32) -> Result<(), NotHeld> {
+        let Some(module) = self.modules.get(place) else { return Ok(()) };
+        let Some(target) = P::module(module.node.into()) else { return Ok(()) };
+        let (goal, heard) = (self.goal(module), module.heard);
+        match (self.possible(place, goal, target), heard) {
+            (Goal::Leave, _) => {
+                self.end(place);
+                Ok(())
+            }
+            (goal, None) => self.probe(place, goal, target, now),
+            (goal, Some(_)) => {
+                // What it is to do goes first.
+                self.tell(place, goal, target, now)?;
+                self.read(place, target, now)
+            }
+        }
+    }
+
+    /// Returns what a module is to do.
+    fn goal(&self, module: &Module<P>) -> Goal {
+        let group = self.groups.iter().find(|group| module.group == Some(group.number));
+        let (point, is_on) = match (group.map_or(self.others, |group| group.task), self.settings.found) {
+            (Task::Leave, _) => return Goal::Leave,
+            (Task::Watch, _) | (Task::AsFound, Found::Watch) => return Goal::Read,
+            (Task::Stop, _) | (Task::AsFound, Found::Off) => return Goal::Off,
+            (Task::AsFound, Found::Adopt(_)) if module.was_on == Some(false) => return Goal::Off,
+            (Task::AsFound, Found::Adopt(point)) => (point, module.was_on == Some(true)),
+            (Task::Deliver(point), _) => (point, true),
+        };
+        Goal::Output { point: self.limited(module, point), is_on }
+    }
+
+    /// Returns what a module can be asked for. It is off if the document does not allow the output of this round.
+    fn possible(&mut self, place: usize, goal: Goal, target: P::Target) -> Goal {
+        let Goal::Output { point, .. } = goal else { return goal };
+        if request::deliver::<P>(&self.settings, target, point).is_ok() {
+            return goal;
+        }
+        self.modules.get_mut(place).into_iter().for_each(|module| module.told.unmet.begin());
+        Goal::Off
+    }
+
+    /// Returns the set-point of this round: it rises by a step, and the group does not exceed its limit.
+    fn limited(&self, module: &Module<P>, point: SetPoint) -> SetPoint {
+        let limits = &self.settings.limits;
+        let members = module.group.map_or(1, |group| self.members(group).count());
+        let share = limits.share(i32::try_from(members).unwrap_or(i32::MAX));
+        let step = module.reached_ma.saturating_add(limits.rise_ma);
+        SetPoint { current_ma: point.current_ma.map(|current| current.min(share).min(step)), ..point }
+    }
+
+    /// Tells a module that does not answer what it is to do, once. So it does not come back as it was.
+    fn probe(&mut self, place: usize, goal: Goal, target: P::Target, now: u32) -> Result<(), NotHeld> {
+        let settings = &self.settings;
+        let reading = || request::readings::<P>(target).into_iter().flatten().next();
+        let request = match goal {
+            Goal::Leave => None,
+            Goal::Read => reading(),
+            Goal::Off => request::switch_off::<P>(settings, target).ok().flatten(),
+            Goal::Output { point, is_on } => {
+                let [first, ..] = output::<P>(settings, target, point, is_on);
+                first.or_else(reading)
+            }
+        };
+        let Some(request) = request else { return Ok(()) };
+        let is_stop = goal == Goal::Off;
+        let once = Pace { tries: 1, ..settings.pace };
+        if !is_stop {
+            self.has_room()?;
+        }
+        let ticket = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
+        if is_stop {
+            self.client.hurry(ticket, now);
+        }
+        let Some([first, ..]) = self.modules.get_mut(place).map(|module| &mut module.reads) else { return Ok(()) };
+        *first = Read::of(ticket);
+        Ok(())
+    }
+
+    /// Reads a module again and again, and its group if that is not known.
+    fn read(&mut self, place: usize, target: P::Target, now: u32) -> Result<(), NotHeld> {
+        let Settings { pace, round, .. } = self.settings;
+        let Some(module) = self.modules.get(place) else { return Ok(()) };
+        let group = request::group::<P>(target).filter(|_| !module.has_group);
+        if let Some(request) = group {
+            self.has_room()?;
+            let once = Pace { tries: 1, ..pace };
+            let _ = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
+        }
+        for (index, request) in request::readings::<P>(target).into_iter().enumerate() {
+            let is_read = self.modules.get(place).and_then(|module| module.reads.get(index)).is_some_and(Read::is_on);
+            let Some(request) = request.filter(|_| !is_read) else { continue };
+            self.has_room()?;
+            let ticket = self.client.every(round, request, now).map_err(|_| NotHeld::Full)?;
+            if let Some(read) = self.modules.get_mut(place).and_then(|module| module.reads.get_mut(index)) {
+                *read = Read::of(ticket);
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds what a module is to do.
+    fn tell(&mut self, place: usize, goal: Goal, target: P::Target, now: u32) -> Result<(), NotHeld> {
+        let aim = match goal {
+            Goal::Leave | Goal::Read => Aim::None,
+            Goal::Off => Aim::Off,
+            Goal::Output { point, is_on } => Aim::Output { point, is_on },
+        };
+        if matches!(aim, Aim::Output { .. }) {
+            self.has_room()?;
+        }
+        let Self { client, settings, groups, .. } = self;
+        let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
+        let is_new = module.aim != aim;
+        // A stop of the whole group goes before those of its modules.
+        let has_stop = groups.iter().any(|group| module.group == Some(group.number) && group.stop.is_some());
+        if is_new && !matches!(aim, Aim::Output { .. }) {
+            module.duty.end(client);
+        }
+        if is_new {
+            (module.aim, module.is_met) = (Aim::None, false);
+        }
+        let requests = match aim {
+            Aim::None => [None; 3],
+            Aim::Off => [request::switch_off::<P>(settings, target).ok().flatten(), None, None],
+            Aim::Output { point, is_on } => output::<P>(settings, target, point, is_on),
+        };
+        module.duty.hold(client, requests.into_iter().flatten(), settings.round, agrees, now)?;
+        if is_new && aim == Aim::Off && !has_stop {
+            module.duty.last().into_iter().for_each(|ticket| client.hurry(ticket, now));
+        }
+        module.aim = aim;
+        Ok(())
+    }
+
+    /// Tests whether there is room beside that for stops.
+    fn has_room(&self) -> Result<(), NotHeld> {
+        let stops = self.groups.iter().filter(|group| group.stop.is_none()).count();
+        if self.client.room() > M + stops { Ok(()) } else { Err(NotHeld::Full) }
+    }
+
+    /// Returns when there is something to do, if the client has nothing to do before.
+    pub(super) fn deadline(&self, client: Option<u32>, now: u32) -> u32 {
+        let settings = &self.settings;
+        let times = self.modules.iter().flat_map(|module| {
+            let lost = module.heard.map(|heard| heard.wrapping_add(patience::<P>(settings)));
+            let stale = module.said_at.wrapping_add(settings.valid).wrapping_add(1);
+            [module.due, lost, Some(stale).filter(|_| module.output(settings.valid, now) != Output::Unknown)]
+        });
+        let latest = now.wrapping_add(settings.round);
+        let times =
+            times.flatten().chain(client).map(|time| if has_come(time, now) { now.wrapping_add(1) } else { time });
+        times.fold(latest, |first, time| if earlier(time, first, now) { time } else { first })
+    }
+
+    /// Returns what the program was not told.
+    pub(super) fn event(&mut self, now: u32) -> Option<Event> {
+        let (news, valid) = (&mut self.news, self.settings.valid);
+        let of_bus = Some(core::mem::take(&mut news.clock_back)).filter(|by| *by > 0).map(|by| Event::ClockBack { by });
+        let of_bus = of_bus.or_else(|| news.rival.take().map(Event::Rival));
+        let of_bus = of_bus.or_else(|| core::mem::take(&mut news.is_kept_on).then_some(Event::KeptOn));
+        let of_bus = of_bus.or_else(|| core::mem::take(&mut news.may_wake).then_some(Event::MayWake));
+        of_bus.or_else(|| self.modules.iter_mut().find_map(|module| module.news(valid, now)))
+    }
+}
+
+/// Builds what sets the output of a module, and then what switches it on if it is to be.
+fn output<P: Quantities + Addressed>(
+    settings: &Settings,
+    target: P::Target,
+    point: SetPoint,
+    is_on: bool,
+) -> [Option<Request<P, ()>>; 3] {
+    if is_on {
+        request::deliver::<P>(settings, target, point).unwrap_or_default()
+    } else {
+        request::prepare::<P>(settings, target, point)
+    }
+}
+
+/// Returns how long a module may not answer until it may act by itself: the watchdog without the wait for an answer,
+/// or three rounds.
+fn patience<P: Quantities>(settings: &Settings) -> u32 {
+    let Settings { pace, round, .. } = settings;
+    let wait = pace.wait.saturating_add(pace.late);
+    watchdog::<P>().map_or(round.saturating_mul(3), |watchdog| watchdog.saturating_sub(wait))
+}
+
+/// Tests whether an echo says what was asked for.
+fn agrees<P: Quantities>(asked: &Received<P>, said: &Received<P>) -> bool {
+    said.confirms(asked, TOLERANCE)
+}

@@ -1,0 +1,247 @@
+//! What carries the frames of a station.
+
+use core::cell::{Cell, RefCell};
+use core::future::{pending, ready};
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
+use std::collections::VecDeque;
+use std::vec::Vec;
+
+use embedded_can::nb::Can;
+use embedded_can::{ErrorKind, Id};
+
+use super::bus::{Charger, reply, settings};
+use super::chargers::{AtOnce, Message};
+use crate::Frame;
+use crate::client::Output;
+use crate::station::{Drive, Driver, Event, Found, Known, NonBlocking, Station, pump};
+
+type Lone = Station<Message<AtOnce>, 1, 1, 6>;
+
+fn lone(found: Found) -> Lone {
+    Station::new(settings(found), [1], [(1, None)]).expect("it fits")
+}
+
+/// A bus with charger 1, and the clock.
+struct Wire {
+    now: Cell<u32>,
+    charger: RefCell<Charger>,
+    coming: RefCell<VecDeque<(u32, Frame)>>,
+    sent: RefCell<Vec<u32>>,
+    is_full: Cell<bool>,
+    is_broken: Cell<bool>,
+}
+
+impl Wire {
+    fn new() -> Self {
+        let (coming, sent) = (RefCell::new(VecDeque::new()), RefCell::new(Vec::new()));
+        let charger = RefCell::new(Charger::new(1));
+        Self { now: Cell::new(0), charger, coming, sent, is_full: Cell::new(false), is_broken: Cell::new(false) }
+    }
+
+    /// Carries a frame to the charger, unless the driver is full.
+    fn carries(&self, frame: &Frame) -> bool {
+        if self.is_full.get() {
+            return false;
+        }
+        self.sent.borrow_mut().push(self.now.get());
+        let answer = self.charger.borrow_mut().hear(frame);
+        self.coming.borrow_mut().extend(answer.map(|answer| (self.now.get() + 5, answer)));
+        true
+    }
+
+    fn next(&self) -> Option<Frame> {
+        let mut coming = self.coming.borrow_mut();
+        coming.pop_front_if(|(at, _)| *at <= self.now.get()).map(|(_, frame)| frame)
+    }
+
+    /// Lets the time go on until a frame comes, or until that is over.
+    fn pass(&self, until: u32) {
+        let next = self.coming.borrow().front().map_or(until, |(at, _)| *at);
+        self.now.set(until.min(next).max(self.now.get() + 1));
+    }
+}
+
+#[derive(Debug, PartialEq)]
+struct Broken;
+
+impl embedded_can::Error for Broken {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
+    }
+}
+
+impl Can for &Wire {
+    type Frame = Frame;
+    type Error = Broken;
+
+    fn transmit(&mut self, frame: &Frame) -> nb::Result<Option<Frame>, Broken> {
+        if self.is_broken.get() {
+            return Err(nb::Error::Other(Broken));
+        }
+        if self.carries(frame) { Ok(None) } else { Err(nb::Error::WouldBlock) }
+    }
+
+    fn receive(&mut self) -> nb::Result<Frame, Broken> {
+        if self.is_broken.get() && self.now.get() > 500 {
+            return Err(nb::Error::Other(Broken));
+        }
+        self.next().ok_or(nb::Error::WouldBlock)
+    }
+}
+
+/// Turns until a time, and returns what has happened.
+fn turned(wire: &Wire, station: &mut Lone, drive: &mut Drive<NonBlocking<&Wire>>, until: u32) -> Vec<Event> {
+    let mut events = Vec::new();
+    while wire.now.get() < until {
+        let next = drive.turn(station, || wire.now.get(), |_, event| events.push(event)).expect("the driver works");
+        wire.pass(next.min(until));
+    }
+    events
+}
+
+const FOUND: [Event; 2] = [Event::Found { node: 1 }, Event::Output { node: 1, output: Output::Off }];
+
+#[test]
+fn a_turn_sends_what_is_due_hands_over_what_has_come_and_tells_what_happens() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(NonBlocking(&wire));
+    assert_eq!(turned(&wire, &mut station, &mut drive, 1100), FOUND);
+    assert_eq!(wire.sent.borrow()[..3], [0, 20, 40], "the gap is 20 ms");
+    assert!(!drive.driver().0.is_full.get());
+}
+
+#[test]
+fn what_a_full_driver_does_not_take_is_sent_later() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(NonBlocking(&wire));
+    wire.is_full.set(true);
+    assert_eq!(turned(&wire, &mut station, &mut drive, 300), []);
+    wire.is_full.set(false);
+    assert_eq!(turned(&wire, &mut station, &mut drive, 2900), FOUND);
+}
+
+#[test]
+fn a_driver_that_is_of_no_use_ends_the_turn() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(NonBlocking(&wire));
+    wire.is_broken.set(true);
+    for now in [0, 600] {
+        wire.now.set(now);
+        assert_eq!(drive.turn(&mut station, || now, |_, _| {}), Err(Broken), "at {now}");
+    }
+    wire.is_broken.set(false);
+    assert_eq!(turned(&wire, &mut station, &mut drive, 2900), FOUND);
+}
+
+/// A frame type that holds no frame.
+struct Never;
+
+impl embedded_can::Frame for Never {
+    fn new(_: impl Into<Id>, _: &[u8]) -> Option<Self> {
+        None
+    }
+
+    fn new_remote(_: impl Into<Id>, _: usize) -> Option<Self> {
+        None
+    }
+
+    fn is_extended(&self) -> bool {
+        true
+    }
+
+    fn is_remote_frame(&self) -> bool {
+        false
+    }
+
+    fn id(&self) -> Id {
+        unreachable!("there is no such frame")
+    }
+
+    fn dlc(&self) -> usize {
+        0
+    }
+
+    fn data(&self) -> &[u8] {
+        &[]
+    }
+}
+
+/// A driver of such frames.
+struct Useless;
+
+impl Can for Useless {
+    type Frame = Never;
+    type Error = Broken;
+
+    fn transmit(&mut self, _: &Never) -> nb::Result<Option<Never>, Broken> {
+        Ok(None)
+    }
+
+    fn receive(&mut self) -> nb::Result<Never, Broken> {
+        Err(nb::Error::WouldBlock)
+    }
+}
+
+#[test]
+fn a_driver_of_frames_that_hold_none_takes_none() {
+    assert_eq!(NonBlocking(Useless).send(&reply(9, 1, [0; 4])), Ok(false));
+}
+
+#[test]
+fn what_has_come_since_the_last_turn_is_as_old_as_it_can_be() {
+    let report = reply(10, 1, [0x0F, 0xA0, 0, 0]);
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    wire.charger.borrow_mut().is_there = false;
+    let mut drive = Drive::new(NonBlocking(&wire));
+    turned(&wire, &mut station, &mut drive, 101);
+    drive.turn(&mut station, || 110, |_, _| {}).expect("the driver works");
+    wire.coming.borrow_mut().push_back((0, report));
+    drive.turn(&mut station, || 3500, |_, _| {}).expect("the driver works");
+    assert_eq!(station.voltage_mv(1, 3500), Known::Stale { value: 400_000, since: 110 });
+}
+
+/// Pumps until the clock has come to a time, and returns what has happened.
+fn pumped(wire: &Wire, station: &mut Lone, until: u32) -> Vec<Event> {
+    let mut events = Vec::new();
+    let receive = async |wait: u32| {
+        let next = wire.next();
+        if next.is_none() && wait > 0 {
+            if wire.now.get() >= until {
+                pending::<()>().await;
+            }
+            wire.pass(wire.now.get() + wait);
+            return wire.next();
+        }
+        next
+    };
+    let send = async |frame: &Frame| ready(wire.carries(frame)).await;
+    let future = pump(station, || wire.now.get(), send, receive, |_, event| events.push(event));
+    assert_eq!(pin!(future).poll(&mut Context::from_waker(Waker::noop())), Poll::Pending);
+    events
+}
+
+#[test]
+fn asynchronous_functions_carry_the_frames_of_a_station() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    assert_eq!(pumped(&wire, &mut station, 1100), FOUND);
+    assert_eq!(wire.sent.borrow()[..3], [0, 20, 40], "the gap is 20 ms");
+    wire.is_full.set(true);
+    let sent = wire.sent.borrow().len();
+    let lost = [Event::Output { node: 1, output: Output::Unknown }, Event::Lost { node: 1 }];
+    let events = pumped(&wire, &mut station, 6000);
+    assert!(lost.iter().all(|event| events.contains(event)) && wire.sent.borrow().len() == sent, "{events:?}");
+    wire.is_full.set(false);
+    assert_eq!(pumped(&wire, &mut station, 9000), FOUND);
+}
+
+#[test]
+fn what_comes_while_the_pump_waits_is_as_old_as_it_can_be() {
+    let report = reply(10, 1, [0x0F, 0xA0, 0, 0]);
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    wire.charger.borrow_mut().is_there = false;
+    wire.coming.borrow_mut().push_back((250, report));
+    pumped(&wire, &mut station, 3900);
+    // The switch-off of charger 1 is lost at 100 ms.
+    assert_eq!(station.voltage_mv(1, 3900), Known::Stale { value: 400_000, since: 200 });
+}
