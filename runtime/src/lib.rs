@@ -6,20 +6,21 @@
 //! # Features
 //!
 //! No feature is on by default. Each one implements the optional traits for the types of this
-//! crate. Code that was generated with the switch of the same name needs it for its own types.
+//! crate, or adds a driver. Code that was generated with the switch of the same name needs it for its own types.
 //!
 //! | feature | traits |
 //! |---|---|
 //! | `serde` | `serde::Serialize` and `serde::Deserialize`, without the standard library |
 //! | `defmt` | `defmt::Format` |
 //! | `arbitrary` | `arbitrary::Arbitrary` of messages and frames; the crate `arbitrary` needs the standard library |
+//! | `slcan` | none: it is the [driver](slcan) of serial adapters, for Linux and macOS, and needs the standard library |
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 #![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "`cast_signed` is newer than Rust 1.85")]
 #![allow(clippy::inline_always, reason = "what a spec says is constant, and folds only where it is inlined")]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "slcan"))]
 extern crate std;
 
 mod address;
@@ -61,6 +62,8 @@ pub mod schedule;
 mod set;
 mod signal;
 pub mod sim;
+#[cfg(feature = "slcan")]
+pub mod slcan;
 pub mod station;
 mod status;
 #[cfg(test)]

@@ -1,0 +1,181 @@
+//! Serial adapters that speak SLCAN, on Linux and macOS.
+//!
+//! ```no_run
+//! use canspec_runtime::slcan::{BitRate, Port};
+//! use canspec_runtime::station::Drive;
+//!
+//! let port = Port::open("/dev/ttyACM0", BitRate::Kbit125)?;
+//! let drive = Drive::new(port);
+//! # drop(drive);
+//! # Ok::<(), std::io::Error>(())
+//! ```
+//!
+//! An adapter that is unplugged takes no frame, and is opened again as soon as it is there. It gives no frame back that
+//! it was given.
+
+mod line;
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::termios::{OptionalActions, isatty, tcgetattr, tcsetattr};
+
+use crate::Frame;
+use crate::station::Driver;
+use line::{Line, Lines};
+
+/// How long to wait until an adapter that has gone is looked for again.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// The bit rate of the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BitRate {
+    /// 10 kbit/s.
+    Kbit10,
+    /// 20 kbit/s.
+    Kbit20,
+    /// 50 kbit/s.
+    Kbit50,
+    /// 100 kbit/s.
+    Kbit100,
+    /// 125 kbit/s.
+    Kbit125,
+    /// 250 kbit/s.
+    Kbit250,
+    /// 500 kbit/s.
+    Kbit500,
+    /// 800 kbit/s.
+    Kbit800,
+    /// 1 Mbit/s.
+    Mbit1,
+}
+
+impl BitRate {
+    /// Returns the command that sets it.
+    const fn command(self) -> &'static [u8] {
+        match self {
+            Self::Kbit10 => b"S0\r",
+            Self::Kbit20 => b"S1\r",
+            Self::Kbit50 => b"S2\r",
+            Self::Kbit100 => b"S3\r",
+            Self::Kbit125 => b"S4\r",
+            Self::Kbit250 => b"S5\r",
+            Self::Kbit500 => b"S6\r",
+            Self::Kbit800 => b"S7\r",
+            Self::Mbit1 => b"S8\r",
+        }
+    }
+}
+
+/// A serial port with an adapter.
+#[derive(Debug)]
+pub struct Port {
+    path: PathBuf,
+    rate: BitRate,
+    file: Option<File>,
+    /// When the adapter was looked for last.
+    tried: Instant,
+    lines: Lines,
+}
+
+impl Port {
+    /// Opens a serial port, sets the bit rate, and opens the channel of the adapter.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the port cannot be opened.
+    pub fn open(path: impl Into<PathBuf>, rate: BitRate) -> io::Result<Self> {
+        let path = path.into();
+        let file = Some(opened(&path, rate)?);
+        Ok(Self { path, rate, file, tried: Instant::now(), lines: Lines::NEW })
+    }
+
+    /// Tests whether the adapter is there.
+    pub const fn is_there(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// Waits until something comes, or until this time has passed.
+    pub fn wait(&self, milliseconds: u32) {
+        let Some(port) = &self.file else {
+            std::thread::sleep(Duration::from_millis(milliseconds.into()).min(PATIENCE));
+            return;
+        };
+        let time = Timespec { tv_sec: (milliseconds / 1000).into(), tv_nsec: (milliseconds % 1000 * 1_000_000).into() };
+        // A wait that is interrupted is only shorter.
+        let _ = poll(&mut [PollFd::new(port, PollFlags::IN)], Some(&time));
+    }
+
+    /// Opens the port again if it has gone, from time to time.
+    fn reopen(&mut self) {
+        if self.file.is_none() && self.tried.elapsed() >= PATIENCE {
+            self.tried = Instant::now();
+            self.file = opened(&self.path, self.rate).ok();
+            self.lines = Lines::NEW;
+        }
+    }
+
+    /// Takes what has happened to the port: it has gone, or has no room or nothing to say.
+    fn failed(&mut self, error: &io::Error) {
+        if !matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) {
+            (self.file, self.tried) = (None, Instant::now());
+        }
+    }
+}
+
+impl Driver for Port {
+    type Error = core::convert::Infallible;
+
+    fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error> {
+        self.reopen();
+        let Some(port) = &mut self.file else { return Ok(false) };
+        let line = Line::of(frame);
+        match port.write(line.bytes()) {
+            // A line that was cut is none, and the adapter refuses it.
+            Ok(count) => Ok(count == line.bytes().len()),
+            Err(error) => {
+                self.failed(&error);
+                Ok(false)
+            }
+        }
+    }
+
+    fn receive(&mut self) -> Result<Option<Frame>, Self::Error> {
+        self.reopen();
+        loop {
+            if let Some(frame) = self.lines.frame() {
+                return Ok(Some(frame));
+            }
+            let Some(port) = &mut self.file else { return Ok(None) };
+            match port.read(self.lines.room()) {
+                Ok(0) => self.failed(&io::ErrorKind::UnexpectedEof.into()),
+                Ok(count) => self.lines.took(count),
+                Err(error) => {
+                    self.failed(&error);
+                    return Ok(None);
+                }
+            }
+        }
+    }
+}
+
+/// Opens a port without echo and line editing.
+fn opened(path: &PathBuf, rate: BitRate) -> io::Result<File> {
+    let flags = rustix::fs::OFlags::NOCTTY | rustix::fs::OFlags::NONBLOCK;
+    let flags = i32::try_from(flags.bits()).map_err(io::Error::other)?;
+    let mut port = OpenOptions::new().read(true).write(true).custom_flags(flags).open(path)?;
+    if isatty(&port) {
+        let mut settings = tcgetattr(&port)?;
+        settings.make_raw();
+        tcsetattr(&port, OptionalActions::Now, &settings)?;
+    }
+    // A channel that is open takes no bit rate.
+    for command in [b"C\r", rate.command(), b"O\r"] {
+        port.write_all(command)?;
+    }
+    Ok(port)
+}
