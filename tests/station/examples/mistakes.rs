@@ -21,15 +21,9 @@ struct Mistake {
 
 const ENTRY: &str = "runtime/src/client/entry.rs";
 const ORDER: &str = "runtime/src/client/order.rs";
-const STATION: &str = "tests/station/src/lib.rs";
+const ROUND: &str = "runtime/src/station/round.rs";
 
 const MISTAKES: &[Mistake] = &[
-    Mistake {
-        name: "a stopped group that nobody is awaited from is not told",
-        file: STATION,
-        right: ".filter(|_| task == Task::Stop);",
-        wrong: ".filter(|_| task == Task::Stop && modules.iter().all(|module| module.group.is_some()));",
-    },
     Mistake {
         name: "a switch-on that is lost in a restart does not come again",
         file: ORDER,
@@ -39,26 +33,26 @@ const MISTAKES: &[Mistake] = &[
     Mistake {
         name: "what is held is not renewed",
         file: "runtime/src/client/hold.rs",
-        right: "NonZeroU32::new(refresh.clamp(1, LONGEST))",
-        wrong: "NonZeroU32::new(refresh.clamp(LONGEST, LONGEST))",
+        right: "Some(round(refresh).ok_or(NotHeld::Period)?)",
+        wrong: "Some(round(refresh.max(u32::MAX / 2)).ok_or(NotHeld::Period)?)",
     },
     Mistake {
         name: "nothing is sent again",
         file: ENTRY,
-        right: "if !is_done && self.leader.is_none() && self.sent < self.pace.tries {",
-        wrong: "if !is_done && self.leader.is_none() && self.sent < self.pace.tries.min(1) {",
+        right: "if !is_done && self.leader.is_none() && self.tries < self.pace.tries {",
+        wrong: "if !is_done && self.leader.is_none() && self.tries < self.pace.tries.min(1) {",
     },
     Mistake {
         name: "a late answer is taken for a new one",
         file: ENTRY,
-        right: "if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };",
-        wrong: "if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late / 8 };",
+        right: "if is_answered { [self.pace.wait, self.pace.late] } else { [0, 0] };",
+        wrong: "if is_answered { [self.pace.wait, self.pace.late / 8] } else { [0, 0] };",
     },
     Mistake {
         name: "requests come too fast",
         file: "runtime/src/client.rs",
-        right: "self.free = Some(now.wrapping_add(entry.pace.gap))",
-        wrong: "self.free = Some(now.wrapping_add(entry.pace.gap / 2))",
+        right: "self.busy = Some(now.wrapping_add(entry.pace.gap))",
+        wrong: "self.busy = Some(now.wrapping_add(entry.pace.gap / 2))",
     },
     Mistake {
         name: "a switch-on does not wait for its set-point",
@@ -69,20 +63,20 @@ const MISTAKES: &[Mistake] = &[
     Mistake {
         name: "a switch-on comes again without its set-point",
         file: ENTRY,
-        right: "        self.wait_for_leader();\n",
-        wrong: "",
+        right: "        self.wait_for_leader();\n        self.tries",
+        wrong: "        self.tries",
     },
     Mistake {
         name: "a silent module is assumed to be as it was",
-        file: STATION,
-        right: "for module in self.modules.iter_mut().filter(|module| is_one(module)) {",
-        wrong: "for module in self.modules.iter_mut().filter(|module| is_one(module) && module.group.is_none()) {",
+        file: "runtime/src/station/known.rs",
+        right: "(!has_lasted(self.at, valid.saturating_add(1), now)).then_some(self.value)",
+        wrong: "(!has_lasted(self.at, valid.saturating_mul(9), now)).then_some(self.value)",
     },
     Mistake {
         name: "modules are fed too seldom",
-        file: STATION,
-        right: "        let module = &mut self.modules[place];\n",
-        wrong: "        let module = &mut self.modules[place];\n        let round = &(5 * *round);\n",
+        file: ROUND,
+        right: "self.client.every(round, request, now)",
+        wrong: "self.client.every(5 * round, request, now)",
     },
     Mistake {
         name: "a lost request is not reported",
@@ -98,15 +92,33 @@ const MISTAKES: &[Mistake] = &[
     },
     Mistake {
         name: "a module is not told of the stop of its group",
-        file: STATION,
-        right: "Task::Stop => &OFF,",
-        wrong: "Task::Stop => return Ok(()),",
+        file: ROUND,
+        right: "(Task::Stop, _) | (Task::AsFound, Found::Off) => return Goal::Off,",
+        wrong: "(Task::Stop, _) | (Task::AsFound, Found::Off) => return Goal::Read,",
     },
     Mistake {
         name: "a refusal is taken for an answer",
         file: ENTRY,
         right: "if is_refusal { Heard::Refusal { ticket, received } } else",
         wrong: "if is_refusal && self.hold.is_some() { Heard::Refusal { ticket, received } } else",
+    },
+    Mistake {
+        name: "what was not heard for long is read first",
+        file: ROUND,
+        right: "(goal, None) => self.probe(place, goal, target, now),",
+        wrong: "(goal, None) => self.probe(place, if goal == Goal::Off { Goal::Read } else { goal }, target, now),",
+    },
+    Mistake {
+        name: "what another controller has switched on stays on",
+        file: "runtime/src/station/hear.rs",
+        right: "            self.stop_anew();\n",
+        wrong: "",
+    },
+    Mistake {
+        name: "a clock that goes back stops the station",
+        file: "runtime/src/clock.rs",
+        right: "        self.ahead = self.ahead.wrapping_add(back);\n",
+        wrong: "",
     },
 ];
 

@@ -5,11 +5,12 @@ mod bus;
 mod seeds;
 
 use bus::fleets::{infies, maxwells};
-use bus::{Bus, Charger, RISE_MA};
+use bus::{Bus, Charger};
 use canspec_protocols::{infy, mxr};
 use canspec_runtime::client::Output;
+use canspec_runtime::station::{Known, Refused, Rival};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
-use canspec_station::Refused;
+use canspec_station::{LIMITS, output};
 use seeds::{CYCLE, run};
 
 /// The voltage in mV, and the current in mA.
@@ -21,21 +22,22 @@ const SEEDS: u64 = 200;
 fn modules_are_found_and_the_current_rises_step_by_step() {
     let mut bus = infies(1);
     bus.run(3000);
-    let found: Vec<_> = bus.station.modules().map(|module| (module.node, module.group)).collect();
+    let found: Vec<_> = bus.station.modules().map(|node| (node, bus.station.group(node))).collect();
     assert_eq!(found, [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Some(1 + node / 4))));
-    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
     bus.run(14_000);
     for node in 0..8 {
         let is_told = node < 4;
         let device = *bus.device(node);
         let output = is_told.then_some(FULL);
         assert_eq!((device.is_on, device.voltage_mv.zip(device.current_ma)), (is_told, output), "module {node}");
-        assert_eq!(device.steepest_ma, if is_told { RISE_MA } else { 0 });
-        let module = bus.station.modules().find(|module| module.node == node).expect("it is found");
-        assert_eq!(module.duty.output(), if is_told { Output::On } else { Output::Off });
+        assert_eq!(device.steepest_ma, if is_told { LIMITS.rise_ma } else { 0 });
+        let (station, now) = (&bus.station, bus.now);
+        assert_eq!(station.output(node, now), if is_told { Output::On } else { Output::Off });
         let shown = if is_told { (500_000, 10_000) } else { (0, 0) };
-        assert_eq!(module.voltage_mv.zip(module.current_ma), Some(shown));
-        assert_eq!(module.severity(), if is_told { None } else { Some(Severity::State) });
+        let measured = (station.voltage_mv(node, now), station.current_ma(node, now));
+        assert_eq!(measured, (Known::Fresh(shown.0), Known::Fresh(shown.1)));
+        assert_eq!(station.severity(node, now), Known::Fresh(if is_told { None } else { Some(Severity::State) }));
     }
 }
 
@@ -62,7 +64,7 @@ where
 {
     fn after_restart(&mut self, group: u8, restart: u32) -> (bool, bool, u32) {
         self.run(3000);
-        self.station.deliver(group, FULL.0, FULL.1, self.now).expect("the document allows it");
+        self.station.deliver(group, output(FULL.0, FULL.1), self.now).expect("the document allows it");
         self.run(restart);
         self.bench.restart(3, self.now);
         self.run(restart + 8000);
@@ -75,7 +77,7 @@ where
 fn a_switch_on_that_is_lost_in_a_restart_comes_again_after_its_set_point() {
     let mut bus = infies(3);
     bus.run(3000);
-    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
     // It restarts when its set-point has come, and before its switch-on.
     while bus.device(3).voltage_mv.is_none() {
         bus.run(bus.now + 1);
@@ -105,7 +107,7 @@ fn a_stopped_group_from_which_nobody_was_awaited_is_not_off() {
     assert_eq!(bus.station.modules().count(), 0);
     bus.station.stop(5, bus.now).expect("the group is known");
     bus.run(9000);
-    assert!(!bus.station.is_off(5));
+    assert!(!bus.station.is_off(5, bus.now));
     // It was told all the same, and again and again.
     assert!([3, 4, 5, 6].into_iter().all(|node| !bus.device(node).is_on));
     let offs = bus.sent.iter().filter(|(_, frame)| {
@@ -113,7 +115,7 @@ fn a_stopped_group_from_which_nobody_was_awaited_is_not_off() {
         received.target() == Some(mxr::Target::Group(5)) && received.setting(Quantity::DELIVERING) == Some(0)
     });
     assert_eq!(offs.count(), 3);
-    assert_eq!(bus.station.stop(6, bus.now), Err(Refused::Group));
+    assert_eq!(bus.station.stop(6, bus.now), Err(Refused::Group(6)));
 }
 
 #[test]
@@ -121,7 +123,7 @@ fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
     let mut bus = infies(9);
     bus.run(3000);
     for group in [1, 2] {
-        bus.station.deliver(group, FULL.0, FULL.1, bus.now).expect("the document allows it");
+        bus.station.deliver(group, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
     }
     bus.run(15_000);
     bus.faults(2).lost = 100;
@@ -134,24 +136,25 @@ fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
     assert_eq!([0, 1, 2, 3, 4].map(|node| bus.device(node).is_on), [false, false, false, false, true]);
     let states = [0, 1, 2, 3, 4].map(|node| bus.state(node).expect("it is found"));
     assert_eq!(states, [Output::Off, Output::Off, Output::Unknown, Output::Off, Output::On]);
-    assert_eq!([1, 2].map(|group| bus.station.is_off(group)), [false, false]);
+    assert_eq!([1, 2].map(|group| bus.station.is_off(group, bus.now)), [false, false]);
     bus.faults(2).lost = 0;
     bus.run(stopped + 10_000);
-    assert_eq!([1, 2].map(|group| bus.station.is_off(group)), [true, false]);
+    assert_eq!([1, 2].map(|group| bus.station.is_off(group, bus.now)), [true, false]);
 }
 
 #[test]
 fn the_station_gives_way_to_another_controller_and_still_stops() {
     let mut bus = infies(11);
     bus.run(3000);
-    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
     bus.run(12_000);
-    assert!(!bus.station.has_rival());
+    assert_eq!(bus.rivals(), []);
     let route = canspec_runtime::Route::new(infy::Target::Module(0), 0xF1);
     let request = infy::SetModuleOutput { voltage_v: 300.0, current_a: 2.0 }.set(route).expect("it is legal");
     bus.bench.another_controller(*request.frame(), 1000, 12_100).expect("room");
     bus.run(20_000);
-    assert!(bus.station.has_rival());
+    let rival = Rival { node: Some(0), voltage_mv: Some(300_000), current_ma: Some(2000), is_on: None };
+    assert_eq!(bus.rivals().first(), Some(&rival));
     let settings = |bus: &Bus<infy::Message, 8, 2>, from: u32| {
         let later = bus.sent.iter().filter(|(at, _)| *at > from);
         let received = later.map(|(_, frame)| Received::<infy::Message>::decode(frame).expect("the station sent it"));
@@ -161,7 +164,7 @@ fn the_station_gives_way_to_another_controller_and_still_stops() {
     assert_eq!([0, 1].map(|node| bus.device(node).voltage_mv), [Some(300_000), Some(500_000)]);
     bus.station.stop(1, bus.now).expect("the group is known");
     bus.run(26_000);
-    assert_eq!((settings(&bus, 12_101), bus.device(1).is_on, bus.station.is_off(1)), (0, false, true));
+    assert_eq!((settings(&bus, 12_101), bus.device(1).is_on, bus.station.is_off(1, bus.now)), (0, false, true));
 }
 
 #[test]

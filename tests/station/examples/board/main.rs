@@ -12,6 +12,7 @@ mod start;
 use bus::Bus;
 use bus::fleets::{infies, maxwells};
 use canspec_runtime::{Addressed, Quantities, sim::Faults};
+use canspec_station::output;
 
 #[cfg(target_os = "none")]
 use cortex_m_semihosting::hprintln as say;
@@ -32,7 +33,7 @@ fn story<P: Quantities + Addressed, const N: usize, const G: usize>(
     bus.run(3000);
     show("found", &bus);
     for group in groups {
-        bus.station.deliver(group, OUTPUT.0, OUTPUT.1, bus.now).expect("the document allows it");
+        bus.station.deliver(group, output(OUTPUT.0, OUTPUT.1), bus.now).expect("the document allows it");
     }
     bus.run(20_000);
     show("delivering", &bus);
@@ -52,15 +53,10 @@ fn story<P: Quantities + Addressed, const N: usize, const G: usize>(
 
 fn show<P: Quantities + Addressed, const N: usize, const G: usize>(when: &str, bus: &Bus<P, N, G>) {
     say!("{}, {} ms:", { when }, bus.now);
-    for module in bus.station.modules() {
-        let output = (module.voltage_mv, module.current_ma);
-        say!(
-            "  module {} of group {:?}: {:?}, {:?} mV and mA",
-            module.node,
-            module.group,
-            module.duty.output(),
-            output
-        );
+    for node in bus.station.modules() {
+        let output = bus.station.output(node, bus.now);
+        let measured = [bus.station.voltage_mv(node, bus.now), bus.station.current_ma(node, bus.now)];
+        say!("  module {} of group {:?}: {:?}, {:?} mV and mA", node, bus.station.group(node), output, measured);
     }
 }
 

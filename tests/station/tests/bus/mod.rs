@@ -7,13 +7,12 @@ extern crate alloc;
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use core::time::Duration;
-
-use canspec_runtime::client::{Output, Pace};
+use canspec_runtime::client::Output;
 use canspec_runtime::clock::has_come;
 use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
-use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received, Time, Timing};
-use canspec_station::{Settings, Station};
+use canspec_runtime::station::{Event as Told, Rival, Step};
+use canspec_runtime::{Addressed, AfterSilence, Frame, Protocol, Quantities, Quantity, Received};
+use canspec_station::{Chargers, chargers, pace};
 
 /// What a module sends by itself.
 #[derive(Clone, Copy)]
@@ -52,14 +51,34 @@ pub struct Charger<P: Addressed> {
     pub steepest_ma: i32,
     /// When it started last.
     pub started: u32,
+    /// What it does after silence, and whether it was on before that.
+    pub after_silence: AfterSilence,
+    pub was_on: Option<bool>,
+    /// When it first heard something while it was on, since that was last asked.
+    pub on_heard: Option<u32>,
+    /// Whether it does not do what it is told.
+    pub is_stuck: bool,
     pub reports: Option<Reports<P>>,
 }
 
 impl<P: Addressed> Charger<P> {
     pub fn new(group: (u8, P::Target), tell: fn(&Received<P>, &Self) -> Option<P>) -> Self {
-        let (voltage_mv, current_ma, is_on, was_bare) = (None, None, false, false);
-        let (switched_on, steepest_ma, started, reports) = (0, 0, 0, None);
-        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on, steepest_ma, started, reports }
+        Self {
+            group,
+            tell,
+            voltage_mv: None,
+            current_ma: None,
+            is_on: false,
+            was_bare: false,
+            switched_on: 0,
+            steepest_ma: 0,
+            started: 0,
+            after_silence: P::AFTER_SILENCE,
+            was_on: None,
+            on_heard: None,
+            is_stuck: false,
+            reports: None,
+        }
     }
 
     /// Lets the module send something by itself.
@@ -85,7 +104,7 @@ impl<P: Quantities + Addressed> Device<P> for Charger<P>
 where
     P::Target: PartialEq,
 {
-    fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
+    fn answer(&mut self, request: &Received<P>, now: u32) -> Answer<P> {
         let [voltage_mv, current_ma, is_on] =
             [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING]
                 .map(|quantity| request.setting(quantity));
@@ -93,11 +112,12 @@ where
             self.steepest_ma = self.steepest_ma.max(current_ma - self.current_ma.unwrap_or_default());
         }
         (self.voltage_mv, self.current_ma) = (voltage_mv.or(self.voltage_mv), current_ma.or(self.current_ma));
-        if let Some(is_on) = is_on {
+        if let Some(is_on) = is_on.filter(|_| !self.is_stuck) {
             self.switched_on += u32::from(is_on == 1 && !self.is_on);
             self.is_on = is_on == 1;
             self.was_bare |= self.is_on && (self.voltage_mv.is_none() || self.current_ma.is_none());
         }
+        self.on_heard = self.on_heard.or(Some(now)).filter(|_| self.is_on);
         if voltage_mv.is_none() && current_ma.is_none() && is_on.is_none() {
             return (self.tell)(request, self).map_or(Answer::Silence, Answer::Values);
         }
@@ -106,6 +126,10 @@ where
 
     fn is_asked(&self, request: &Received<P>) -> bool {
         request.target() == Some(self.group.1)
+    }
+
+    fn wake(&mut self, _now: u32) {
+        self.is_on = self.was_on.take().unwrap_or(self.is_on);
     }
 
     fn report(&mut self, node: u8, now: u32) -> Option<Frame> {
@@ -120,23 +144,42 @@ where
     }
 
     fn silence(&mut self, _now: u32) {
-        self.is_on = false;
+        match self.after_silence {
+            // What the document does not say could be the worst.
+            AfterSilence::Resumes | AfterSilence::Unknown => {
+                (self.was_on, self.is_on) = (Some(self.is_on), false);
+            }
+            AfterSilence::Off => self.is_on = false,
+            AfterSilence::Starts => self.is_on = true,
+            AfterSilence::Keeps => {}
+        }
     }
 
     fn power_on(&mut self, now: u32) {
         self.started = now;
-        (self.voltage_mv, self.current_ma, self.is_on) = (None, None, false);
+        (self.voltage_mv, self.current_ma, self.is_on, self.was_on) = (None, None, false, None);
     }
 }
 
 /// A station, and the bus with its `N` modules.
 pub struct Bus<P: Quantities + Addressed, const N: usize, const G: usize> {
-    pub station: Station<P, 16, G, 64>,
+    pub station: Chargers<P, G>,
     pub bench: Bench<P, Charger<P>, N, 64>,
+    /// The time of the bus, and how far the program's clock is ahead.
     pub now: u32,
+    pub ahead: u32,
+    /// Whether the driver takes no frame, and gives none.
+    pub is_down: bool,
+    /// Whether the program stands still while the driver keeps frames, with the times at which they came.
+    pub is_stalled: bool,
+    pub kept: Vec<(Frame, u32)>,
+    /// Until when modules may not be fed, since the bus was away.
+    pub excused: u32,
     /// What the station has sent, and how many frames it has heard.
     pub sent: Vec<(u32, Frame)>,
     pub heard: u64,
+    /// What it has told.
+    pub events: Vec<(u32, Told)>,
 }
 
 impl<P: Quantities + Addressed, const N: usize, const G: usize> Bus<P, N, G>
@@ -144,13 +187,18 @@ where
     P::Target: PartialEq,
 {
     pub fn new(groups: [(u8, P::Target); G], modules: [(u8, Charger<P>); N], seed: u64) -> Self {
-        let settings = Settings { pace: pace::<P>(), round: ROUND, rise_ma: RISE_MA };
         Self {
-            station: Station::new(settings, core::array::from_fn(|node| u8::try_from(node).expect("below 16")), groups),
+            station: chargers(groups.map(|(number, target)| (number, Some(target)))).expect("it fits the document"),
             bench: Bench::new(modules, rules::<P>(), seed),
             now: 0,
+            ahead: 0,
+            is_down: false,
+            is_stalled: false,
+            kept: Vec::new(),
+            excused: 0,
             sent: Vec::new(),
             heard: 0,
+            events: Vec::new(),
         }
     }
 
@@ -162,29 +210,68 @@ where
         }
     }
 
+    /// Lets time pass, in which modules may not be fed.
+    pub fn run_unfed(&mut self, until: u32) {
+        while self.now < until {
+            if let Err(complaint) = self.turn() {
+                assert!(complaint.contains("heard nothing"), "at {} ms: {complaint}", self.now);
+            } else {
+                self.now += 1;
+            }
+        }
+    }
+
     /// Lets the station read and send what it has to, and fails if it breaks a rule.
     pub fn turn(&mut self) -> Result<(), String> {
         while let Some(event) = self.bench.poll(self.now) {
             match event {
-                Event::Frame { frame, .. } => {
-                    self.heard += 1;
-                    self.station.handle(&frame, self.now);
-                }
+                Event::Frame { .. } if self.is_down => {}
+                Event::Frame { frame, at } => self.kept.push((frame, at.wrapping_add(self.ahead))),
                 // What it has not found yet, it cannot feed.
                 Event::Complaint(Complaint::Unfed { node }) if self.state(node).is_none() => {}
+                Event::Complaint(Complaint::Unfed { .. }) if self.now < self.excused => {}
                 Event::Complaint(complaint) => return Err(complaint.to_string()),
             }
         }
-        while let Some(frame) = self.station.poll(self.now) {
-            self.sent.push((self.now, frame));
-            self.bench.send(&frame, self.now);
+        if self.is_stalled {
+            return Ok(());
         }
-        Ok(())
+        for (frame, at) in self.kept.drain(..) {
+            self.heard += 1;
+            self.station.handle(&frame, at);
+        }
+        loop {
+            match self.station.poll(self.clock()) {
+                Step::Send { ticket, .. } if self.is_down => self.station.not_sent(ticket, self.clock()),
+                Step::Send { frame, .. } => {
+                    self.sent.push((self.now, frame));
+                    self.bench.send(&frame, self.now);
+                }
+                Step::Event(event) => self.events.push((self.now, event)),
+                Step::Wait(_) => return Ok(()),
+            }
+        }
+    }
+
+    /// Returns the time of the program's clock.
+    pub fn clock(&self) -> u32 {
+        self.now.wrapping_add(self.ahead)
     }
 
     /// Returns what the station says of a module, if it has found it.
     pub fn state(&self, node: u8) -> Option<Output> {
-        self.station.modules().find(|module| module.node == node).map(|module| module.duty.output())
+        self.station.modules().any(|known| known == node).then(|| self.station.output(node, self.clock()))
+    }
+
+    /// Returns what other controllers have set.
+    pub fn rivals(&self) -> Vec<Rival> {
+        let rival = |(_, told): &(u32, Told)| if let Told::Rival(rival) = told { Some(*rival) } else { None };
+        self.events.iter().filter_map(rival).collect()
+    }
+
+    /// Returns a module as it is.
+    pub fn bench_device(&mut self, node: u8) -> Charger<P> {
+        *self.device(node)
     }
 
     pub fn device(&mut self, node: u8) -> &mut Charger<P> {
@@ -194,27 +281,6 @@ where
     pub fn faults(&mut self, node: u8) -> &mut Faults {
         self.bench.faults(node).expect("a module of the bus")
     }
-}
-
-/// The time from one round to the next.
-pub const ROUND: u32 = 3000;
-
-/// How far the current rises in a round.
-pub const RISE_MA: i32 = 4000;
-
-/// Returns the times of the document, and chooses those that it does not state.
-fn timing<P: Protocol>() -> Timing {
-    let Timing { request_gap, reply_timeout, tries, .. } = P::TIMING;
-    let chosen = |time: Option<Time>, milliseconds| time.unwrap_or(Time::of(Duration::from_millis(milliseconds)));
-    P::TIMING
-        .with_request_gap(chosen(request_gap, 20))
-        .with_reply_timeout(chosen(reply_timeout, 100))
-        .with_tries(tries.unwrap_or(3))
-}
-
-/// Returns the pace of the document, and chooses what it does not state.
-pub fn pace<P: Protocol>() -> Pace {
-    Pace::of(&timing::<P>(), 100).expect("what the document does not state is chosen")
 }
 
 /// Returns what the devices of the document expect.

@@ -2,12 +2,15 @@
 //!
 //! Groups deliver, are stopped, and are left in peace, again and again. A run asserts what the station promises:
 //! - no request comes sooner after another one than the document allows, and none is forbidden,
-//! - each live module that was found is fed before its watchdog runs out,
+//! - each live module that was found is fed before its watchdog runs out, while the bus is there and the station has not
+//!   given way,
 //! - each request of a client ends once, as answered, refused, lost or done,
-//! - after a stop each live module is off within its watchdog. It is never on while it is known to be off. In peace, each
-//!   is known to be off, or is unknown if it is dead.
+//! - after a stop no module delivers for longer than two rounds after it has heard anything. It is never on while it is
+//!   known to be off. In peace, each is known to be off, or is unknown if it is dead,
+//! - no value counts that is older than it may be, and no output is beyond a limit.
 //!
-//! No module is ever switched on without its set-point, and each delivers if its answers are not too poor.
+//! Meanwhile the bus goes away, the program stands still while the driver keeps frames, the clock goes back, and other
+//! controllers read and set. No module is ever switched on without its set-point, and each delivers if its answers are not too poor.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -17,17 +20,16 @@ use canspec_runtime::client::{Client, Heard, Output, Step, Ticket};
 use canspec_runtime::sim::{Event, Faults, Random, Tally};
 use canspec_runtime::{Addressed, Quantities, Quantity, Request};
 
-use crate::bus::{Bus, RISE_MA, pace};
+use crate::bus::Bus;
+use canspec_station::{LIMITS, ROUND, output, pace};
 
 /// The voltage in mV, and the current in mA.
-const OUTPUT: (i32, i32) = (500_000, 2 * RISE_MA);
+const OUTPUT: (i32, i32) = (500_000, 2 * LIMITS.rise_ma);
 /// How long a cycle delivers, is stopped while modules fail, and is left in peace.
 const DELIVER: u32 = 60_000;
 const STOP: u32 = 30_000;
 const PEACE: u32 = 20_000;
 pub const CYCLE: u32 = DELIVER + STOP + PEACE;
-/// After this time each module is off: the longest watchdog.
-const OFF_WITHIN: u32 = 10_000;
 /// After this time a module with fair answers delivers.
 const SETTLED: u32 = 25_000;
 /// How many of a hundred frames have a fault, at most, in fair and in poor cycles.
@@ -38,7 +40,7 @@ const POOR: u8 = 30;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts([u64; NAMES.len()]);
 
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 19] = [
     "runs",
     "frames sent",
     "frames heard",
@@ -49,6 +51,10 @@ const NAMES: [&str; 15] = [
     FAULTS[4],
     FAULTS[5],
     FAULTS[6],
+    TROUBLES[0],
+    TROUBLES[1],
+    TROUBLES[2],
+    TROUBLES[3],
     "stops",
     "modules found off",
     "dead modules unknown",
@@ -66,6 +72,13 @@ const FAULTS: [&str; 7] = [
     "restarts",
     "deaths",
 ];
+
+/// What happens to the bus, to the program and by others.
+const TROUBLES: [&str; 4] =
+    ["buses away", "programs that stand still", "clocks that go back", "other controllers that set"];
+
+/// How long a trouble lasts at most.
+const LONGEST_TROUBLE: u32 = 14_000;
 
 impl Counts {
     fn add(&mut self, name: &str, count: u64) {
@@ -95,6 +108,8 @@ pub struct Run<P: Quantities + Addressed, const N: usize, const G: usize> {
     pub code: u64,
     pub random: Random,
     pub counts: Counts,
+    /// When the trouble of this phase begins and ends, and which one it is.
+    pub trouble: (u32, u32, usize),
 }
 
 impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usize> Run<P, N, G> {
@@ -121,20 +136,27 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
     fn cycle(&mut self, cycle: u32) -> Result<(), String> {
         let start = self.bus.now;
         let is_fair = self.draw_faults(cycle);
-        for group in self.groups {
-            self.bus.station.deliver(group, OUTPUT.0, OUTPUT.1, start).map_err(|refused| format!("{refused:?}"))?;
-        }
+        // What another controller has switched on does not count.
+        self.nodes.into_iter().for_each(|node| self.bus.device(node).was_bare = false);
+        self.deliver()?;
+        self.draw_trouble(false);
+        self.pass(start + DELIVER / 2, false)?;
+        // What has given way delivers again.
+        self.deliver()?;
         self.pass(start + DELIVER, false)?;
         if is_fair {
             self.check_output()?;
         }
         for group in self.groups {
-            self.bus.station.stop(group, self.bus.now).map_err(|refused| format!("{refused:?}"))?;
+            self.bus.station.stop(group, self.bus.clock()).map_err(|refused| format!("{refused:?}"))?;
             self.counts.add("stops", 1);
         }
-        self.pass(start + DELIVER + OFF_WITHIN, true)?;
-        self.check_off()?;
+        for node in self.nodes {
+            self.bus.device(node).on_heard = None;
+        }
+        self.draw_trouble(true);
         self.pass(start + DELIVER + STOP, true)?;
+        self.check_off()?;
         for node in self.nodes {
             let faults = self.bus.faults(node);
             *faults = Faults { dies: faults.dies, ..Faults::NONE };
@@ -144,13 +166,71 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         self.check_states()
     }
 
+    fn deliver(&mut self) -> Result<(), String> {
+        let now = self.bus.clock();
+        self.groups.into_iter().try_for_each(|group| {
+            let point = output(OUTPUT.0, OUTPUT.1);
+            self.bus.station.deliver(group, point, now).map_err(|refused| format!("{refused:?}"))
+        })
+    }
+
+    /// Draws the trouble of a phase. Each kind happens in the first cycles.
+    fn draw_trouble(&mut self, is_stopped: bool) {
+        let kind = usize::try_from(self.random.below(4)).expect("below 4");
+        // What another controller sets while a group delivers ends that, as one of the tests shows.
+        let kind = if !is_stopped && kind == 3 { 0 } else { kind };
+        let begins = self.bus.now + self.random.below(10_000);
+        self.trouble = (begins, begins + 1 + self.random.below(LONGEST_TROUBLE), kind);
+    }
+
+    /// Lets the trouble begin and end.
+    fn trouble(&mut self) {
+        let (begins, ends, kind) = self.trouble;
+        if self.bus.now < begins {
+            return;
+        }
+        let is_over = self.bus.now >= ends;
+        match kind {
+            0 => self.bus.is_down = !is_over,
+            1 => self.bus.is_stalled = !is_over,
+            2 => self.bus.ahead = self.bus.ahead.wrapping_sub(self.random.below(60_000)),
+            _ => self.another_controller(),
+        }
+        if kind < 2 {
+            // Modules that were not fed meanwhile are found again in the next rounds.
+            self.bus.excused = self.bus.now + 3 * ROUND;
+            // Nobody can tell them anything.
+            self.nodes.into_iter().for_each(|node| self.bus.device(node).on_heard = None);
+        }
+        if is_over || kind >= 2 {
+            self.trouble.0 = u32::MAX;
+            self.counts.add(TROUBLES[kind], 1);
+        }
+    }
+
+    /// Lets another controller switch a module on, once.
+    fn another_controller(&mut self) {
+        let node = self.nodes[usize::try_from(self.random.below(2)).expect("below 2")];
+        self.bus.device(node).was_bare = false;
+        let target = P::module(node.into()).expect("a module");
+        let switch = P::set(&[(Quantity::DELIVERING, 1)], target).expect("it is legal").next().expect("one message");
+        let _ = self.bus.bench.another_controller(*switch.frame(), u32::MAX / 4, self.bus.now);
+    }
+
     /// Lets time pass, in turns of the program that take up to 15 ms.
     fn pass(&mut self, until: u32, is_stopped: bool) -> Result<(), String> {
         while self.bus.now < until {
+            self.trouble();
             self.bus.turn()?;
             for node in self.nodes {
-                let device = self.bus.device(node);
-                if device.was_bare {
+                let now = self.bus.now;
+                let device = *self.bus.device(node);
+                let was_told = |at: u32| is_stopped && now > at + 2 * ROUND && self.bus.bench.is_up(node);
+                if device.on_heard.is_some_and(was_told) {
+                    return Err(format!("module {node} has heard something since the stop, and is on"));
+                }
+                let is_others = self.trouble.2 == 3 && is_stopped;
+                if device.was_bare && !is_others {
                     return Err(format!("module {node} is switched on without its set-point"));
                 }
                 if is_stopped && device.is_on && self.bus.state(node) == Some(Output::Off) {
@@ -236,6 +316,9 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
             if state != Some(expected) && !(is_dead && state.is_none()) {
                 return Err(format!("module {node} is {state:?}, not {expected:?}"));
             }
+            if is_dead && self.bus.station.voltage_mv(node, self.bus.clock()).fresh().is_some() {
+                return Err(format!("the voltage of the dead module {node} counts"));
+            }
             self.counts.add(if is_dead { "dead modules unknown" } else { "modules found off" }, 1);
         }
         Ok(())
@@ -316,9 +399,9 @@ pub fn run(seed: u64, end: u32) -> Result<Counts, String> {
     let (random, counts) = (Random::new(!seed), Counts::default());
     if seed.is_multiple_of(2) {
         let (bus, nodes) = (crate::bus::fleets::infies(seed), [0, 1, 2, 3, 4, 5, 6, 7]);
-        Run { bus, groups: [1, 2], nodes, code: 4, random, counts }.until(end)
+        Run { bus, groups: [1, 2], nodes, code: 4, random, counts, trouble: (u32::MAX, 0, 0) }.until(end)
     } else {
         let (bus, nodes) = (crate::bus::fleets::maxwells(seed), [3, 4, 5, 6]);
-        Run { bus, groups: [5], nodes, code: 0xF2, random, counts }.until(end)
+        Run { bus, groups: [5], nodes, code: 0xF2, random, counts, trouble: (u32::MAX, 0, 0) }.until(end)
     }
 }
