@@ -158,7 +158,7 @@ impl Known {
             Message::BalanceState(BalanceState { balance }) => self.balance = Some(balance),
             Message::FailureStatus(status) => self.failures = Some(status),
             Message::CellVoltagesPart(CellVoltagesPart { part, voltage_v }) => {
-                drop(self.cells_v.insert(part, voltage_v))
+                self.cells_v.insert(part, voltage_v);
             }
             Message::TemperaturesPart(TemperaturesPart { part, temperature_c }) => {
                 self.temperatures_c.insert(part, temperature_c);
