@@ -57,6 +57,11 @@ struct Transports;
 #[doc = include_str!("../../docs/how-to/quantities.md")]
 struct QuantitiesOfVendors;
 
+/// The Rust of the page on a charging controller compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/charger.md")]
+struct Chargers;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.

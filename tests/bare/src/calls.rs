@@ -174,7 +174,11 @@ fn bench<P: Addressed + Unknown>() {
     let rules = Rules { gap: unknown(), watchdog: Some(unknown()), boot: unknown() };
     let mut bench = Bench::<P, Any, 2, 3>::new([(unknown(), Any), (unknown(), Any)], rules, unknown());
     sink(bench.another_controller(unknown_frame(), unknown(), unknown()));
-    bench.cut(Outage { from: unknown(), until: unknown(), driver: if unknown() { Driver::Drops } else { Driver::Buffers } });
+    bench.cut(Outage {
+        from: unknown(),
+        until: unknown(),
+        driver: if unknown() { Driver::Drops } else { Driver::Buffers },
+    });
     for _ in 0..unknown::<u8>() {
         if let Some(faults) = bench.faults(unknown()) {
             *faults = Faults::random(&mut Random::new(unknown()), unknown(), unknown());
