@@ -153,7 +153,7 @@ fn of_a_part_that_goes_to_a_fan_nothing_but_the_counter_can_be_changed() {
     assert_eq!(second, frame(0x0197_01E1, &[1, 8, 0, 0, 0, 0, 0, 0]));
     let received = decoded(&second);
     let Message::CurvePart(part) = *received.content() else { panic!("it carries a part") };
-    let built = |part| received.clone().with_content(Message::CurvePart(part)).encode();
+    let built = |part| received.with_content(Message::CurvePart(part)).encode();
     assert_eq!(built(CurvePart { counter: 7, ..part }), Ok(frame(0x0197_01E1, &[0xE1, 8, 0, 0, 0, 0, 0, 0])));
     let refused = |part| match built(part) {
         Err(Error::Value(refused)) => refused.signal(),
