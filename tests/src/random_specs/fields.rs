@@ -352,7 +352,7 @@ impl Draft {
             return field.put("as", "bytes");
         }
         field.put("as", "text");
-        if self.chance(30) {
+        if self.chance(90) {
             field.put("fill", self.one(&["0", "0x20", "255", "0x41"]));
         }
         if self.chance(20) {
