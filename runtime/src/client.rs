@@ -52,27 +52,33 @@
 mod bus;
 mod duty;
 mod entry;
+mod error;
 mod group;
 mod health;
+mod heard;
 mod hold;
 mod nodes;
 mod order;
 mod pace;
+mod step;
 #[cfg(test)]
 mod tests;
 
 pub use bus::Bus;
 pub use duty::{Duty, Output};
 pub use entry::Ticket;
+pub use error::{Full, NotRepeated};
 pub use group::NoMembers;
+pub use heard::Heard;
 pub use hold::{Agrees, NotHeld, repeats};
 pub use nodes::Nodes;
 pub use pace::Pace;
+pub use step::Step;
 
 use core::num::NonZeroU32;
 
 use crate::clock::{Steady, earlier, has_come};
-use crate::{Frame, Problem, Protocol, Received, Replies, Request};
+use crate::{Problem, Protocol, Received, Replies, Request};
 use bus::Sending;
 use entry::{Entry, State, Urgency};
 use group::Groups;
@@ -80,9 +86,6 @@ use health::Health;
 
 /// The longest time in milliseconds after which a later time is still told from an earlier one.
 const LONGEST: u32 = (1 << 31) - 1;
-
-/// Why a period is refused.
-const NO_PERIOD: &str = "the period is 0 ms, which would fill the bus: it is at least 1 ms";
 
 /// Asks devices, with room for `N` requests, and for `G` groups whose members it knows.
 ///
@@ -109,138 +112,6 @@ pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     /// Number of the next ticket.
     next: u32,
 }
-
-/// What a program does next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[must_use]
-pub enum Step {
-    /// It sends a frame now.
-    Send {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        frame: Frame,
-    },
-    /// A request is lost: it was sent as often as it may be, and no answer came. If it is held, none came
-    /// that agrees.
-    Lost(Ticket),
-    /// A request is done that nobody answers, or that each module of several could answer. If the client
-    /// knows [who they are](Client::members), all of them have.
-    Done(Ticket),
-    /// A request is lost: it was sent as often as it may be, and some of the modules that should answer did
-    /// not. If it is held, they have not agreed.
-    Missing {
-        /// The request.
-        ticket: Ticket,
-        /// The modules.
-        nodes: Nodes,
-    },
-    /// A module is silent: a request was lost, and nothing came from this module meanwhile.
-    Silent(u8),
-    /// A silent module has sent something.
-    Back(u8),
-    /// The clock has gone back by this number of milliseconds. No time counts as passed, and the client goes on.
-    ClockBack(u32),
-    /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
-    Wait(Option<u32>),
-}
-
-/// What a received frame is to a client.
-#[derive(Clone, Copy, Debug)]
-#[must_use]
-pub enum Heard<P: Protocol> {
-    /// It answers a request.
-    Answer {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It answers a request that is [held](Client::hold), and says something else. The request waits on.
-    NotInEffect {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It answers a request: the module [starts](Protocol::STARTING), and can be asked later. The request waits on, and
-    /// is sent again as if nobody had answered. The module is not silent.
-    Starting {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It refuses a request: it shows an error code, or is the message that says why.
-    Refusal {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It refuses a request with another number of bytes than the message has, as an error reply may.
-    ShortRefusal(Ticket),
-    /// It would answer a request if it had the right length, or says that the module starts. The request waits on.
-    Broken(Ticket),
-    /// It answers a request that was lost or cancelled, or could answer what a held one replaced.
-    Late {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It answers a request that has an answer already, as the further parts of a message in `parts`
-    /// do. Give them to the assembler, too. A module of a group that answers after [`Step::Done`] is
-    /// also here.
-    Twice {
-        /// The request.
-        ticket: Ticket,
-        /// The frame.
-        received: Received<P>,
-    },
-    /// It goes to a module: a request or a report of another controller. A rival may only read. What it
-    /// [sets](Received::setting) shows whether it does more.
-    Rival(Received<P>),
-    /// It comes from a module and answers nothing that was asked: a report, or a reply to somebody else.
-    Other(Received<P>),
-    /// It is not recognised.
-    Unrecognised(Problem),
-}
-
-/// There is no room for another request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Full;
-
-impl core::fmt::Display for Full {
-    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        formatter.write_str("there is no room for another request")
-    }
-}
-
-impl core::error::Error for Full {}
-
-/// Why a request is not asked again and again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum NotRepeated {
-    /// There is no room for another request.
-    Full,
-    /// The period is 0 ms.
-    Period,
-}
-
-impl core::fmt::Display for NotRepeated {
-    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Full => Full.fmt(formatter),
-            Self::Period => formatter.write_str(NO_PERIOD),
-        }
-    }
-}
-
-impl core::error::Error for NotRepeated {}
 
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns a client that has asked nothing yet.

@@ -3,7 +3,7 @@
 use super::entry::{Asked, Entry, State};
 use super::group::Groups;
 use super::order::Leader;
-use super::{Client, Full, NO_PERIOD, Ticket, has_one_answer, round};
+use super::{Client, Full, NotRepeated, Ticket, has_one_answer, round};
 use crate::clock::{earlier, has_come, latest_of};
 use crate::{Protocol, Received, Request};
 
@@ -36,7 +36,7 @@ impl core::fmt::Display for NotHeld {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Full => Full.fmt(formatter),
-            Self::Period => formatter.write_str(NO_PERIOD),
+            Self::Period => NotRepeated::Period.fmt(formatter),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
             Self::First => formatter.write_str("what it is to follow is not held, or would be replaced"),
             Self::Torn(_) => formatter.write_str("something else is held of other modules that are partly the same"),
