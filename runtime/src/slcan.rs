@@ -14,6 +14,8 @@
 //! it was given.
 
 mod line;
+#[cfg(test)]
+mod tests;
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};

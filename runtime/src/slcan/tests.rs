@@ -1,0 +1,107 @@
+//! A port at a pty, whose other end is the adapter.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
+use std::string::{String, ToString};
+use std::time::{Duration, Instant};
+use std::vec;
+
+use rustix::fs::{OFlags, fcntl_setfl};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+use super::{BitRate, Port};
+use crate::Frame;
+use crate::station::Driver;
+
+/// Returns an adapter, and the path of its port.
+fn adapter() -> (File, String) {
+    let adapter = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pty");
+    grantpt(&adapter).expect("it is ours");
+    unlockpt(&adapter).expect("it is ours");
+    fcntl_setfl(&adapter, OFlags::NONBLOCK).expect("it is open");
+    let path = ptsname(&adapter, vec![]).expect("it has a port");
+    (File::from(adapter), path.to_str().expect("a path of ASCII").to_string())
+}
+
+/// Returns what the adapter is told.
+fn told(adapter: &mut File) -> String {
+    let mut bytes = [0; 256];
+    match adapter.read(&mut bytes) {
+        Ok(count) => String::from_utf8_lossy(&bytes[..count]).into_owned(),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => String::new(),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn frame() -> Frame {
+    Frame::new_raw(0x0284_F003, true, [0xAB, 0, 2, 0, 0x16, 0, 0x40, 0xFF], 8)
+}
+
+#[test]
+fn a_port_opens_the_channel_and_carries_frames_both_ways() {
+    let (mut adapter, path) = adapter();
+    let mut port = Port::open(path, BitRate::Kbit125).expect("the pty is there");
+    assert_eq!((told(&mut adapter).as_str(), port.is_there()), ("C\rS4\rO\r", true));
+    assert_eq!(port.send(&frame()), Ok(true));
+    assert_eq!(told(&mut adapter), "T0284F0038AB000200160040FF\r");
+    assert_eq!(port.receive(), Ok(None));
+    // What the adapter says is not given back to it, and two frames may come at once.
+    adapter.write_all(b"z\rt10021133\rT0284F0038AB000200160040FF\r").expect("there is room");
+    let received: [_; 3] = core::array::from_fn(|_| port.receive().map(|frame| frame.map(|frame| frame.to_string())));
+    let expected = [Some("100#1133"), Some("0284F003#AB000200160040FF"), None];
+    assert_eq!(received, expected.map(|text| Ok(text.map(str::to_string))));
+    assert_eq!(told(&mut adapter), "");
+}
+
+#[test]
+fn each_bit_rate_has_its_number() {
+    use BitRate::{Kbit10, Kbit20, Kbit50, Kbit100, Kbit125, Kbit250, Kbit500, Kbit800, Mbit1};
+    for (number, rate) in
+        [Kbit10, Kbit20, Kbit50, Kbit100, Kbit125, Kbit250, Kbit500, Kbit800, Mbit1].into_iter().enumerate()
+    {
+        let (mut adapter, path) = adapter();
+        let port = Port::open(path, rate).expect("the pty is there");
+        assert_eq!(told(&mut adapter), std::format!("C\rS{number}\rO\r"));
+        drop(port);
+    }
+}
+
+#[test]
+fn a_port_waits_until_something_comes_or_the_time_has_passed() {
+    let (mut adapter, path) = adapter();
+    let port = Port::open(path, BitRate::Mbit1).expect("the pty is there");
+    let start = Instant::now();
+    port.wait(1050);
+    assert!(start.elapsed() >= Duration::from_millis(1050));
+    adapter.write_all(b"t1000\r").expect("there is room");
+    port.wait(u32::MAX);
+}
+
+#[test]
+fn an_adapter_that_has_gone_takes_nothing_until_it_is_back() {
+    let (adapter, path) = adapter();
+    let link = std::env::temp_dir().join(std::format!("canspec-slcan-{}", std::process::id()));
+    let _ = std::fs::remove_file(&link);
+    std::os::unix::fs::symlink(&path, &link).expect("the folder can be written");
+    let mut port = Port::open(&link, BitRate::Kbit500).expect("the pty is there");
+    drop(adapter);
+    assert_eq!(port.receive(), Ok(None));
+    assert_eq!((port.is_there(), port.send(&frame())), (false, Ok(false)));
+    let (mut back, path) = self::adapter();
+    std::fs::remove_file(&link).expect("it is there");
+    std::os::unix::fs::symlink(&path, &link).expect("the folder can be written");
+    // It is not looked for again at once.
+    assert_eq!((port.send(&frame()), port.is_there()), (Ok(false), false));
+    port.wait(10_000);
+    assert_eq!(port.send(&frame()), Ok(true));
+    assert_eq!(told(&mut back), "C\rS6\rO\rT0284F0038AB000200160040FF\r");
+    std::fs::remove_file(&link).expect("it is there");
+}
+
+#[test]
+fn what_is_no_port_is_refused() {
+    assert_eq!(
+        Port::open("/nowhere/at/all", BitRate::Kbit10).map_err(|error| error.kind()).err(),
+        Some(ErrorKind::NotFound)
+    );
+}
