@@ -55,12 +55,13 @@ mod tests;
 
 use crate::client::{Bus, Client, Heard, Output, Step as Asked, Ticket};
 use crate::clock::{Steady, has_come};
-use crate::{Addressed, AfterSilence, Protocol, Quantities, Received, Request, Severity};
+use crate::{Addressed, AfterSilence, Protocol, Quantities, Quantity, Received, Replies, Request, Severity};
 pub use drive::{Drive, Driver, NonBlocking, pump};
 pub use event::{Event, Rival, Step};
+use hear::sender;
 pub use known::Known;
 use known::known;
-use module::{Aim, Module, Task};
+use module::{Goal, Module, Task};
 pub use settings::{Beyond, Found, Limits, Refused, Rivals, SetPoint, Settings, Unfit};
 
 /// The longest time in milliseconds that a station counts, which is six days.
@@ -113,7 +114,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Returns a station that looks for modules at `addresses`. Each group has its number, and what addresses all of
     /// its modules, if the document has that.
     ///
-    /// Modules of protocols with a [group](crate::Quantity::GROUP) say which one they are in. Others are
+    /// Modules of protocols with a [group](Quantity::GROUP) say which one they are in. Others are
     /// [assigned](Self::assign) by the program.
     ///
     /// # Errors
@@ -121,16 +122,22 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Refuses
     /// - a round that is too short for these modules or for an answer, or longer than a third of the watchdog,
     /// - values that count for less than a round, or longer than the watchdog,
+    /// - a protocol in which no module answers when it is switched off, or none is asked whether it delivers,
     /// - an address at which no module is switched off, as the document says,
     /// - what is to be adopted if it is beyond a limit, or the document does not allow it.
     pub fn new(settings: Settings, addresses: [u8; M], groups: [(u8, Option<P::Target>); G]) -> Result<Self, Unfit> {
         const { assert!(R >= Self::ROOM, "the station needs more room for requests: at least `Station::ROOM`") }
         fits_time::<P>(&settings, M)?;
+        if !request::is_read::<P>(Quantity::DELIVERING) {
+            return Err(Unfit::Unread);
+        }
         let mut may_wake = settings.found == Found::Watch;
         for node in addresses {
             let target = P::module(node.into()).ok_or(Unfit::Address(node))?;
             let off = request::switch_off::<P>(&settings, target).map_err(Unfit::Document)?;
-            off.ok_or(Unfit::Address(node)).map(drop)?;
+            if off.ok_or(Unfit::Address(node))?.replies() == Replies::Nobody {
+                return Err(Unfit::Unanswered);
+            }
             if let Found::Adopt(point) = settings.found {
                 settings.limits.allow(point).map_err(Unfit::Beyond)?;
                 request::deliver::<P>(&settings, target, point).map_err(Unfit::Document)?;
@@ -201,9 +208,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Returns what a module is told to deliver now, if it is.
     pub fn told(&self, node: u8) -> Option<SetPoint> {
-        match self.module(node)?.aim {
-            Aim::Output { point, .. } => Some(point),
-            Aim::Off | Aim::None => None,
+        match self.module(node)?.goal {
+            Goal::Output { point, .. } => Some(point),
+            Goal::Off | Goal::Read | Goal::Leave => None,
         }
     }
 
@@ -215,7 +222,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         members.peek().is_some() && members.all(|module| module.output(self.settings.valid, now) == Output::Off)
     }
 
-    /// Tests whether a contactor at the output of a group may open. Each of its modules is known to be off, and has
+    /// Tests whether a contactor at the output of a group may open. What was never found does not count, so compare
+    /// [`modules`](Self::modules) with those that are built in. Each of its modules is known to be off, and has
     /// measured less than [`open_mv`](Limits::open_mv).
     pub fn is_safe_to_open(&self, group: u8, now: u32) -> bool {
         let Settings { valid, limits, .. } = self.settings;
@@ -328,13 +336,13 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             }
             Heard::Twice { ticket, received } => {
                 self.answers(&received, at);
-                if let Some(module) = self.module_of(&received) {
+                if let Some(module) = sender(&mut self.modules, &received) {
                     module.answered_twice(ticket, &received);
                 }
             }
             Heard::Starting { received, .. } => {
                 self.answers(&received, at);
-                if let Some(module) = self.module_of(&received) {
+                if let Some(module) = sender(&mut self.modules, &received) {
                     module.forget();
                     module.told.starting.begin();
                 }
@@ -342,7 +350,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             Heard::ShortRefusal(ticket) | Heard::Broken(ticket) => self.speaks(ticket, at),
             Heard::Rival(received) => self.overheard(&received),
             // What it reports by itself does not show that it has heard anything.
-            Heard::Other(received) => self.module_of(&received).into_iter().for_each(|module| {
+            Heard::Other(received) => sender(&mut self.modules, &received).into_iter().for_each(|module| {
                 module.measured(&received, at);
             }),
             Heard::Unrecognised(_) => {}
@@ -351,10 +359,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Says what to do next. Call it until it waits, after all frames from the bus were handled.
     pub fn poll(&mut self, now: u32) -> Step {
-        let program = now;
         let now = self.take(now);
-        if self.next.is_some_and(|next| !has_come(next, now)) {
-            return Step::Wait(self.clock.of_program(self.next.unwrap_or(now)));
+        if let Some(next) = self.next.filter(|next| !has_come(*next, now)) {
+            return Step::Wait(self.clock.of_program(next));
         }
         self.next = None;
         self.stop_groups(now);
@@ -373,7 +380,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
                 Asked::Wait(until) => {
                     let next = self.deadline(until, now);
                     self.next = Some(next);
-                    return Step::Wait(program.wrapping_add(next.wrapping_sub(now)));
+                    return Step::Wait(self.clock.of_program(next));
                 }
             }
         }
@@ -417,11 +424,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         self.modules.iter().find(|module| module.node == node)
     }
 
-    fn module_of(&mut self, received: &Received<P>) -> Option<&mut Module<P>> {
-        let node = received.node().filter(|_| !received.is_to_module());
-        self.modules.iter_mut().find(|module| node == Some(module.node.into()))
-    }
-
     fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
         self.modules.iter().filter(move |module| module.group == Some(group))
     }
@@ -439,7 +441,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
         for module in modules.iter_mut().filter(|module| module.group == Some(group.number)) {
             // Faster than it is in effect, it would never be switched on.
-            let waits = !module.is_met && is_raised(&module.aim, task);
+            let waits = !module.is_met && is_raised(module.goal, task);
             module.due = module.due.filter(|_| waits);
         }
     }
@@ -460,9 +462,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 }
 
 /// Tests whether nothing about an output is to fall.
-fn is_raised(aim: &Aim, task: Task) -> bool {
-    match (aim, task) {
-        (Aim::Output { point, .. }, Task::Deliver(new)) => {
+fn is_raised(goal: Goal, task: Task) -> bool {
+    match (goal, task) {
+        (Goal::Output { point, .. }, Task::Deliver(new)) => {
             new.voltage_mv >= point.voltage_mv && new.current_ma >= point.current_ma
         }
         _ => false,

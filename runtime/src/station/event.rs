@@ -70,7 +70,7 @@ pub enum Event {
         /// Its address.
         node: u8,
     },
-    /// Another controller sets an output.
+    /// Another controller sets an output. If it has set several things since the last poll, this is the last one.
     Rival(Rival),
     /// The station has given way to another controller, and goes on reading. That keeps outputs on.
     KeptOn,

@@ -1,24 +1,24 @@
 //! What a station hears.
 
-use super::module::{Aim, Task};
+use super::module::{Goal, Module, Task};
 use super::{Found, Rival, Rivals, Station};
 use crate::client::{Nodes, Ticket};
-use crate::{Addressed, Quantities, Quantity, Received};
+use crate::{Addressed, Protocol, Quantities, Quantity, Received};
 
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
     /// Takes an answer.
     pub(super) fn answered(&mut self, ticket: Ticket, received: &Received<P>, at: u32) {
         self.answers(received, at);
-        let Some(place) = self.place(received) else { return };
-        let Some(module) = self.modules.get_mut(place) else { return };
+        let Self { client, modules, .. } = self;
+        let Some(module) = sender(modules, received) else { return };
         if module.answered(ticket, received, at) {
-            self.tell_anew(place);
+            module.tell_anew(client);
         }
     }
 
     /// Notes that a module has answered something, and takes its group.
     pub(super) fn answers(&mut self, received: &Received<P>, at: u32) {
-        let Some(module) = self.module_of(received) else { return };
+        let Some(module) = sender(&mut self.modules, received) else { return };
         module.answers(at);
         let said = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok());
         let Some(group) = said else { return };
@@ -33,7 +33,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     pub(super) fn refused(&mut self, ticket: Ticket, received: &Received<P>, at: u32) {
         self.answers(received, at);
         let is_held = self.client.holds(ticket);
-        let Some(module) = self.module_of(received) else { return };
+        let Some(module) = sender(&mut self.modules, received) else { return };
         module.lost(ticket);
         if is_held {
             module.told.unmet.begin();
@@ -50,9 +50,10 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Puts a module into a group.
     pub(super) fn join(&mut self, node: u8, group: Option<u8>) {
-        let Some(place) = self.modules.iter().position(|module| module.node == node) else { return };
-        self.tell_anew(place);
-        self.modules.get_mut(place).into_iter().for_each(|module| module.group = group);
+        let Self { client, modules, .. } = self;
+        let Some(module) = modules.iter_mut().find(|module| module.node == node) else { return };
+        module.tell_anew(client);
+        module.group = group;
         self.know_members();
     }
 
@@ -70,13 +71,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             let Some(target) = group.target else { continue };
             let _ = client.members(target, members);
         }
-    }
-
-    /// Ends what a module is told, and tells it anew.
-    fn tell_anew(&mut self, place: usize) {
-        let Some(module) = self.modules.get_mut(place) else { return };
-        module.duty.end(&mut self.client);
-        (module.aim, module.due) = (Aim::None, None);
     }
 
     /// Takes a request of another controller. One that only reads is no rival.
@@ -123,13 +117,14 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         for group in &mut self.groups {
             group.stop.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
         }
-        let are_off = self.modules.map(|module| module.aim == Aim::Off);
-        let places = are_off.into_iter().enumerate().filter(|(_, is_off)| *is_off);
-        places.for_each(|(place, _)| self.tell_anew(place));
+        for module in self.modules.iter_mut().filter(|module| module.goal == Goal::Off) {
+            module.tell_anew(&mut self.client);
+        }
     }
+}
 
-    fn place(&self, received: &Received<P>) -> Option<usize> {
-        let node = received.node()?;
-        self.modules.iter().position(|module| i32::from(module.node) == node)
-    }
+/// Returns the module that has sent a frame.
+pub fn sender<'a, P: Protocol>(modules: &'a mut [Module<P>], received: &Received<P>) -> Option<&'a mut Module<P>> {
+    let node = received.node().filter(|_| !received.is_to_module());
+    modules.iter_mut().find(|module| node == Some(module.node.into()))
 }

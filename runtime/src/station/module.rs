@@ -4,7 +4,7 @@ use super::LONGEST;
 use super::event::Event;
 use super::known::Said;
 use super::settings::SetPoint;
-use crate::client::{Duty, Output, Ticket};
+use crate::client::{Client, Duty, Output, Ticket};
 use crate::clock::{has_come, has_lasted, later_of};
 use crate::{Protocol, Quantities, Quantity, Received, Severity};
 
@@ -49,7 +49,7 @@ pub struct Module<P: Protocol> {
     /// When its next round begins. None means at once.
     pub due: Option<u32>,
     /// What it is told.
-    pub aim: Aim,
+    pub goal: Goal,
     /// Whether all of that is in effect.
     pub is_met: bool,
     /// The current that has been in effect while it delivered, in mA.
@@ -60,11 +60,13 @@ pub struct Module<P: Protocol> {
     pub told: Told,
 }
 
-/// What a module is told.
+/// What a station wants of a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aim {
-    /// Nothing.
-    None,
+pub enum Goal {
+    /// Nothing at all.
+    Leave,
+    /// To be read, and not to be told anything.
+    Read,
     /// To be off.
     Off,
     /// To have an output, and to be on, or to stay on or off as it is.
@@ -165,7 +167,7 @@ impl<P: Protocol> Module<P> {
             current_ma: None,
             status: None,
             due: None,
-            aim: Aim::None,
+            goal: Goal::Read,
             is_met: false,
             reached_ma: 0,
             was_on: None,
@@ -215,6 +217,27 @@ impl<P: Protocol> Module<P> {
             (self.reads, self.has_group, self.due) = ([Read::NONE; 3], false, None);
         }
         self.heard = Some(self.heard.map_or(at, |heard| later_of(heard, at)));
+    }
+
+    /// Ends all that is asked of it.
+    pub fn end<const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
+        let reads = self.reads.iter_mut();
+        reads.filter_map(|read| read.ticket.take()).for_each(|ticket| client.cancel(ticket));
+        self.duty.end(client);
+        self.goal = Goal::Read;
+    }
+
+    /// Ends what is asked of it, as it may act by itself. It is not read until it answers.
+    pub fn lose<const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
+        self.end(client);
+        (self.heard, self.was_on, self.due, self.reached_ma) = (None, None, None, 0);
+        self.conflict = Conflict::None;
+    }
+
+    /// Ends what it is told, and lets it be told anew.
+    pub fn tell_anew<const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
+        self.duty.end(client);
+        (self.goal, self.due) = (Goal::Read, None);
     }
 
     /// Knows only that it is there, since it starts.
@@ -289,7 +312,7 @@ impl<P: Quantities> Module<P> {
         self.told.starting = Once::No;
         if self.duty.answered(ticket, received) {
             self.is_met = true;
-            if let Aim::Output { point, .. } = self.aim {
+            if let Goal::Output { point, .. } = self.goal {
                 self.told.unmet = Once::No;
                 self.reached_ma = point.current_ma.unwrap_or(self.reached_ma);
             }
@@ -311,7 +334,7 @@ impl<P: Quantities> Module<P> {
         if self.duty.output() == Output::Off {
             self.told.unmet = Once::No;
         }
-        let resists = was_met && self.aim == Aim::Off && is_on == Some(1);
+        let resists = was_met && self.goal == Goal::Off && is_on == Some(1);
         match resists {
             true if was_off => self.told.woke = Once::Yes,
             true => self.told.unmet.begin(),

@@ -102,35 +102,27 @@ pub fn group<P: Quantities + Addressed>(target: P::Target) -> Option<Request<P, 
 }
 
 /// Tests whether a request without values asks for a quantity.
-fn is_read<P: Quantities>(quantity: Quantity) -> bool {
+pub fn is_read<P: Quantities>(quantity: Quantity) -> bool {
     P::READS.iter().any(|path| path.quantity == quantity && path.request.is_some())
 }
 
 /// Returns how many requests a module takes in each round: those that read it, and those that set it.
 pub const fn each_round<P: Quantities>() -> usize {
-    let mut count = 0;
-    let mut index = 0;
-    while index < P::READS.len() {
-        count += is_first_read::<P>(index, &READINGS) as usize;
-        index += 1;
-    }
-    index = 0;
-    while index < P::SETS.len() {
-        count += is_first_set::<P>(index) as usize;
+    let (mut count, mut index) = (0, 0);
+    while index < P::READS.len() + P::SETS.len() {
+        count += is_first::<P>(index) as usize;
         index += 1;
     }
     count
 }
 
-/// Tests whether a message is read for a quantity, and for none before it.
-const fn is_first_read<P: Quantities>(index: usize, wanted: &[Quantity]) -> bool {
-    let path = &P::READS[index];
-    let Some(request) = path.request else { return false };
-    let mut earlier = 0;
+/// Tests whether a message is sent by a path, and by none of its kind before it.
+const fn is_first<P: Quantities>(index: usize) -> bool {
+    let Some(message) = sent::<P>(index) else { return false };
+    let mut earlier = if index < P::READS.len() { 0 } else { P::READS.len() };
     while earlier < index {
-        let other = &P::READS[earlier];
-        let is_one = match other.request {
-            Some(known) => has(wanted, other.quantity) && is_same(known.message(), request.message()),
+        let is_one = match sent::<P>(earlier) {
+            Some(known) => is_same(known, message),
             None => false,
         };
         if is_one {
@@ -138,21 +130,20 @@ const fn is_first_read<P: Quantities>(index: usize, wanted: &[Quantity]) -> bool
         }
         earlier += 1;
     }
-    has(wanted, path.quantity)
+    true
 }
 
-/// Tests whether a message is sent for a quantity, and for none before it.
-const fn is_first_set<P: Quantities>(index: usize) -> bool {
-    let path = &P::SETS[index];
-    let mut earlier = 0;
-    while earlier < index {
-        let other = &P::SETS[earlier];
-        if has(&SETTINGS, other.quantity) && is_same(other.request.message(), path.request.message()) {
-            return false;
-        }
-        earlier += 1;
+/// Returns the message that is sent by a path if a station uses it. Paths that read come first.
+const fn sent<P: Quantities>(index: usize) -> Option<&'static str> {
+    if index >= P::READS.len() {
+        let path = &P::SETS[index - P::READS.len()];
+        return if has(&SETTINGS, path.quantity) { Some(path.request.message()) } else { None };
     }
-    has(&SETTINGS, path.quantity)
+    let path = &P::READS[index];
+    match path.request {
+        Some(request) if has(&READINGS, path.quantity) => Some(request.message()),
+        Some(_) | None => None,
+    }
 }
 
 const fn has(wanted: &[Quantity], quantity: Quantity) -> bool {

@@ -1,6 +1,6 @@
 //! What a station asks in each round.
 
-use super::module::{Aim, Conflict, Module, Read, Task};
+use super::module::{Goal, Module, Read, Task};
 use super::{Event, Found, SetPoint, Settings, Station, request, watchdog};
 use crate::client::{Full, NotHeld, Output, Pace};
 use crate::clock::{earlier, has_come, has_lasted};
@@ -9,19 +9,6 @@ use crate::{Addressed, Quantities, Received, Request};
 /// How far an echo may differ, in thousandths of a unit. Documents print echoes that differ by 15.
 const TOLERANCE: u32 = 100;
 
-/// What a station wants of a module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Goal {
-    /// Nothing at all.
-    Leave,
-    /// To be read.
-    Read,
-    /// To be off.
-    Off,
-    /// To have an output, and to be on, or to stay on or off as it is.
-    Output { point: SetPoint, is_on: bool },
-}
-
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
     /// Begins the round of a module when it is due, and gives up one that has not answered in time.
     pub(super) fn look_after(&mut self, place: usize, now: u32) {
@@ -29,9 +16,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let patience = patience::<P>(&self.settings);
         let Some(module) = self.modules.get_mut(place) else { return };
         if module.heard.is_some_and(|heard| has_lasted(heard, patience, now)) {
-            self.lose(place);
+            module.lose(&mut self.client);
         }
-        let Some(module) = self.modules.get_mut(place) else { return };
         module.expire(now);
         if module.due.is_some_and(|due| !has_come(due, now)) {
             return;
@@ -44,23 +30,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         }
     }
 
-    /// Ends what is asked of a module, as it may act by itself. It is not read until it answers.
-    fn lose(&mut self, place: usize) {
-        self.end(place);
-        let Some(module) = self.modules.get_mut(place) else { return };
-        (module.heard, module.was_on, module.due, module.reached_ma) = (None, None, None, 0);
-        module.conflict = Conflict::None;
-    }
-
-    /// Ends all that is asked of a module.
-    pub(super) fn end(&mut self, place: usize) {
-        let Some(module) = self.modules.get_mut(place) else { return };
-        let reads = module.reads.iter_mut();
-        reads.filter_map(|read| read.ticket.take()).for_each(|ticket| self.client.cancel(ticket));
-        module.duty.end(&mut self.client);
-        module.aim = Aim::None;
-    }
-
     /// Reads a module and tells it what it is to do. One that does not answer is only told.
     fn ask(&mut self, place: usize, now: u32) -> Result<(), NotHeld> {
         let Some(module) = self.modules.get(place) else { return Ok(()) };
@@ -68,7 +37,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let (goal, heard) = (self.goal(module), module.heard);
         match (self.possible(place, goal, target), heard) {
             (Goal::Leave, _) => {
-                self.end(place);
+                self.modules.get_mut(place).into_iter().for_each(|module| module.end(&mut self.client));
                 Ok(())
             }
             (goal, None) => self.probe(place, goal, target, now),
@@ -165,35 +134,31 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Holds what a module is to do.
     fn tell(&mut self, place: usize, goal: Goal, target: P::Target, now: u32) -> Result<(), NotHeld> {
-        let aim = match goal {
-            Goal::Leave | Goal::Read => Aim::None,
-            Goal::Off => Aim::Off,
-            Goal::Output { point, is_on } => Aim::Output { point, is_on },
-        };
-        if matches!(aim, Aim::Output { .. }) {
+        let is_output = matches!(goal, Goal::Output { .. });
+        if is_output {
             self.has_room()?;
         }
         let Self { client, settings, groups, .. } = self;
         let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
-        let is_new = module.aim != aim;
+        let is_new = module.goal != goal;
         // A stop of the whole group goes before those of its modules.
         let has_stop = groups.iter().any(|group| module.group == Some(group.number) && group.stop.is_some());
-        if is_new && !matches!(aim, Aim::Output { .. }) {
+        if is_new && !is_output {
             module.duty.end(client);
         }
         if is_new {
-            (module.aim, module.is_met) = (Aim::None, false);
+            (module.goal, module.is_met) = (Goal::Read, false);
         }
-        let requests = match aim {
-            Aim::None => [None; 3],
-            Aim::Off => [request::switch_off::<P>(settings, target).ok().flatten(), None, None],
-            Aim::Output { point, is_on } => output::<P>(settings, target, point, is_on),
+        let requests = match goal {
+            Goal::Leave | Goal::Read => [None; 3],
+            Goal::Off => [request::switch_off::<P>(settings, target).ok().flatten(), None, None],
+            Goal::Output { point, is_on } => output::<P>(settings, target, point, is_on),
         };
         module.duty.hold(client, requests.into_iter().flatten(), settings.round, agrees, now)?;
-        if is_new && aim == Aim::Off && !has_stop {
+        if is_new && goal == Goal::Off && !has_stop {
             module.duty.last().into_iter().for_each(|ticket| client.hurry(ticket, now));
         }
-        module.aim = aim;
+        module.goal = goal;
         Ok(())
     }
 

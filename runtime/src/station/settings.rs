@@ -87,7 +87,8 @@ pub struct Limits {
     pub most_mw: i32,
     /// The greatest sum of the currents that are set in a group, in mA.
     pub group_ma: i32,
-    /// How far the current rises from one round to the next, in mA.
+    /// How far the current rises from one round to the next, in mA. A module that restarts between two rounds is told its
+    /// last step once more before it says that it is off.
     pub rise_ma: i32,
     /// Below this voltage a contactor may open, in mV.
     pub open_mv: i32,
@@ -164,6 +165,10 @@ pub enum Unfit {
     },
     /// No module is asked by this address.
     Address(u8),
+    /// No module answers when it is switched off. So nothing shows whether it has heard that.
+    Unanswered,
+    /// No request reads whether a module delivers. What modules report by themselves shows nothing of what they heard.
+    Unread,
     /// The document does not allow what the station needs.
     Document(Error),
     /// What it is to adopt is beyond a limit.
@@ -176,6 +181,8 @@ impl fmt::Display for Unfit {
             Self::Round { least, most } => write!(formatter, "the round must be from {least} to {most} ms"),
             Self::Valid { least, most } => write!(formatter, "values must count from {least} to {most} ms"),
             Self::Address(node) => write!(formatter, "no module is asked by the address {node}"),
+            Self::Unanswered => formatter.write_str("no module answers when it is switched off"),
+            Self::Unread => formatter.write_str("no request reads whether a module delivers"),
             Self::Document(error) => error.fmt(formatter),
             Self::Beyond(beyond) => beyond.fmt(formatter),
         }

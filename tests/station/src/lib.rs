@@ -42,11 +42,14 @@ pub fn chargers<P: Quantities + Addressed, const G: usize>(
 
 /// Returns the settings of a station, by what becomes of modules that it finds.
 pub fn settings<P: Protocol>(found: Found) -> Settings {
-    let Pace { gap, .. } = pace::<P>();
-    Settings::new(pace::<P>(), ROUND.max(64 * gap), found, LIMITS)
+    Settings::new(pace::<P>(), ROUND, found, LIMITS)
 }
 
 /// Returns the pace of the document, and chooses what that does not state.
+///
+/// # Panics
+///
+/// If a time of the document is longer than 24 days.
 pub fn pace<P: Protocol>() -> Pace {
     let Timing { request_gap, reply_timeout, tries, .. } = P::TIMING;
     let chosen = |time: Option<Time>, milliseconds| time.unwrap_or(Time::of(Duration::from_millis(milliseconds)));
@@ -54,7 +57,7 @@ pub fn pace<P: Protocol>() -> Pace {
         .with_request_gap(chosen(request_gap, 20))
         .with_reply_timeout(chosen(reply_timeout, 100))
         .with_tries(tries.unwrap_or(3));
-    Pace::of(&timing, 100).unwrap_or(Pace { gap: 50, wait: 100, tries: 3, late: 100 })
+    Pace::of(&timing, 100).expect("no time is longer than 24 days")
 }
 
 /// Returns a set-point, in mV and mA.

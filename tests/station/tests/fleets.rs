@@ -1,11 +1,15 @@
-//! The simulated modules without a station: each does what it is told, and says so.
+//! The simulated modules without a station, and stations of vendors whose modules have no groups.
 
 mod bus;
 
 use bus::fleets::{huaweis, megmeets, trios};
 use bus::{Charger, rules};
+use canspec_protocols::{huawei, megmeet, trio};
+use canspec_runtime::client::Output;
 use canspec_runtime::sim::{Bench, Event};
+use canspec_runtime::station::{Found, Limits, SetPoint, Settings, Station, Step, Unfit};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received};
+use canspec_station::{LIMITS, settings};
 
 const VOLTAGE: Quantity = Quantity::OUTPUT_VOLTAGE;
 const DELIVERING: Quantity = Quantity::DELIVERING;
@@ -47,4 +51,52 @@ fn modules_of_every_vendor_do_what_they_are_told() {
     assert_eq!(told(megmeets(), &[(DELIVERING, 0)]), [[Some(0), Some(0)]; 4]);
     assert_eq!(told(huaweis(), &[(DELIVERING, 0)]), [[Some(0), Some(0)]; 3]);
     assert_eq!(told(trios(), &[(VOLTAGE, 24_000), (DELIVERING, 0)]), [[Some(0), Some(0)]; 3]);
+}
+
+/// Settings for modules of 48 V.
+fn low<P: Quantities>() -> Settings {
+    Settings { limits: Limits { least_mv: 42_000, most_mv: 58_000, ..LIMITS }, ..settings::<P>(Found::Off) }
+}
+
+#[test]
+fn modules_without_groups_deliver_and_stop_in_the_group_that_the_program_chooses() {
+    type Megmeet = megmeet::Message;
+    let mut station = Station::<Megmeet, 4, 1, 64>::new(low::<Megmeet>(), [1, 2, 3, 4], [(1, None)]).expect("it fits");
+    let mut bench = Bench::<Megmeet, Charger<Megmeet>, 4, 64>::new(megmeets(), rules::<Megmeet>(), 1);
+    [1, 2, 3].into_iter().try_for_each(|node| station.assign(node, Some(1), 0)).expect("it answers nobody yet");
+    let point = SetPoint { voltage_mv: 53_500, current_ma: None };
+    let mut outputs = Vec::new();
+    for now in 0..40_000 {
+        match now {
+            5000 => station.deliver(1, point, now).expect("the document allows it"),
+            20_000 => station.stop(1, now).expect("the group is known"),
+            _ => {}
+        }
+        while let Some(event) = bench.poll(now) {
+            let Event::Frame { frame, at } = event else { panic!("{event:?}") };
+            station.handle(&frame, at);
+        }
+        loop {
+            match station.poll(now) {
+                Step::Send { frame, .. } => bench.send(&frame, now),
+                Step::Event(_) => {}
+                Step::Wait(_) => break,
+            }
+        }
+        if [19_999, 39_999].contains(&now) {
+            outputs.push(
+                [1, 2, 3, 4].map(|node| (station.output(node, now), bench.device(node).expect("it is there").is_on)),
+            );
+        }
+    }
+    let (on, off) = ((Output::On, true), (Output::Off, false));
+    assert_eq!(outputs, [[on, on, on, off], [off; 4]]);
+    assert_eq!(bench.device(1).and_then(|module| module.voltage_mv), Some(53_500));
+}
+
+#[test]
+fn vendors_whose_modules_do_not_answer_or_are_not_asked_have_no_station() {
+    let silent = Station::<trio::Message, 1, 0, 5>::new(low::<trio::Message>(), [0xE0], []).err();
+    let unasked = Station::<huawei::Message, 1, 0, 8>::new(low::<huawei::Message>(), [1], []).err();
+    assert_eq!((silent, unasked), (Some(Unfit::Unread), Some(Unfit::Unread)));
 }

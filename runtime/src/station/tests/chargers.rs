@@ -56,6 +56,12 @@ const STATE: Exchange = ASK.of("state").id(COMMAND, 8).length(4);
 /// Its group alone.
 const PLACE: Exchange = ASK.of("place").id(COMMAND, 7).length(4);
 const MEASURED: Exchange = ASK.of("measured").id(COMMAND, 9).length(4);
+/// Switches on and off. Nobody answers it.
+const ORDER: Exchange = Access::new("order", &[Some(Who::Nobody), Some(Who::Nobody), None])
+    .request(&FRAME)
+    .of("order")
+    .id(COMMAND, 11)
+    .length(4);
 const REPORT: Exchange = SAY.of("report").id(COMMAND, 10).length(4);
 
 const fn number(
@@ -131,6 +137,29 @@ impl Make for Apart {
     ];
     const WATCHDOG: Option<Time> = InGroups::WATCHDOG;
     const AFTER_SILENCE: AfterSilence = AfterSilence::Keeps;
+}
+
+/// They do what they are told, and do not answer that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mute;
+
+impl Make for Mute {
+    const READS: &'static [ReadPath] = InGroups::READS;
+    const SETS: &'static [SetPath] = &[SetPath::switch(Quantity::DELIVERING, &ORDER, FIRST)];
+    const WATCHDOG: Option<Time> = None;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Unknown;
+}
+
+/// They say by themselves whether they deliver, and cannot be asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Talkative;
+
+impl Make for Talkative {
+    const READS: &'static [ReadPath] =
+        &[ReadPath::switch(Quantity::DELIVERING, &[(Kind::Report, &REPORT)], FIRST), VOLTAGE_READ];
+    const SETS: &'static [SetPath] = InGroups::SETS;
+    const WATCHDOG: Option<Time> = None;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Unknown;
 }
 
 /// What is wrong with a module.

@@ -1,7 +1,7 @@
 //! What a station refuses to be.
 
 use super::bus::{LIMITS, PACE, settings, volts};
-use super::chargers::{Apart, AtOnce, InGroups, Message, group};
+use super::chargers::{Apart, AtOnce, InGroups, Message, Mute, Talkative, group};
 use crate::client::Pace;
 use crate::station::{Beyond, Found, Limits, SetPoint, Settings, Station, Unfit};
 use crate::{Error, Quantity};
@@ -36,6 +36,14 @@ fn a_round_takes_all_requests_of_all_modules_and_the_wait_for_an_answer() {
     // An answer comes within 200 ms.
     assert_eq!(with(PACE, 200), Some(Unfit::Round { least: 201, most: 3333 }));
     assert_eq!(with(PACE, 201), None);
+}
+
+#[test]
+fn what_does_not_answer_a_switch_off_or_is_not_asked_whether_it_delivers_has_no_station() {
+    let settings = settings(Found::Off);
+    let mute = Station::<Message<Mute>, 1, 0, 5>::new(settings, [1], []).err();
+    let talkative = Station::<Message<Talkative>, 1, 0, 5>::new(settings, [1], []).err();
+    assert_eq!([mute, talkative], [Some(Unfit::Unanswered), Some(Unfit::Unread)]);
 }
 
 #[test]
