@@ -3,9 +3,7 @@
 use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
 use canspec_runtime::client::{Client, Duty, Heard, Output, Pace, Step};
 use canspec_runtime::sim::{Answer, Device, Keeper};
-use canspec_runtime::{
-    Addressed, AfterSilence, Error, Frame, Protocol, Quantities, Quantity, Reason, Received, Request,
-};
+use canspec_runtime::{Addressed, Error, Frame, Protocol, Quantities, Quantity, Reason, Received, Request};
 use canspec_tests::{
     devices_any_vendor as feature, devices_any_vendor_in_steps as in_steps, devices_any_vendor_switched as in_f32,
     features_controller_report as charging, infy_in_steps,
@@ -34,20 +32,6 @@ fn reads<P: Quantities + Addressed>(target: P::Target, wanted: &[Quantity]) -> R
 /// Returns the value of a quantity that a frame shows.
 fn shown<P: Quantities>(id: u32, data: u64, quantity: Quantity) -> Option<i32> {
     Received::<P>::decode(&frame(id, data)).expect("a frame of the document").quantity(quantity)
-}
-
-#[test]
-fn what_an_output_does_after_silence_is_what_the_document_says() {
-    // INFY 3.1: what delivered delivers again when it hears a command. MEGMEET 4: what was shut down starts.
-    assert_eq!(infy::Message::AFTER_SILENCE, AfterSilence::Resumes);
-    assert_eq!(megmeet::Message::AFTER_SILENCE, AfterSilence::Starts);
-    // Huawei 11.1: it delivers its defaults. TRIO 3.3: what was switched off starts by a command alone.
-    assert_eq!(huawei::Message::AFTER_SILENCE, AfterSilence::Starts);
-    assert_eq!(trio::Message::AFTER_SILENCE, AfterSilence::Keeps);
-    // GCP 3.4 says that a module goes off, and not whether it comes back. Maxwell says nothing, and Daly has no output.
-    assert_eq!(gcp::Message::AFTER_SILENCE, AfterSilence::Unknown);
-    assert_eq!(mxr::Message::AFTER_SILENCE, AfterSilence::Unknown);
-    assert_eq!(daly::Message::AFTER_SILENCE, AfterSilence::Unknown);
 }
 
 #[test]

@@ -4,11 +4,11 @@ mod bus;
 
 use bus::fleets::infies;
 use bus::{Bus, Charger};
-use canspec_protocols::infy;
-use canspec_runtime::Route;
+use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
 use canspec_runtime::client::Output;
 use canspec_runtime::sim::Faults;
 use canspec_runtime::station::{Event, Found, Known, Limits, Refused, Rival, Settings, Station, Unfit};
+use canspec_runtime::{AfterSilence, Protocol, Route};
 use canspec_station::{ADDRESSES, LIMITS, ROUND, output, settings};
 
 type Infies = Bus<infy::Message, 8, 2>;
@@ -39,6 +39,20 @@ fn on(bus: &mut Infies, until: u32) -> Vec<u8> {
         on.extend(found.collect::<Vec<_>>());
     }
     on
+}
+
+#[test]
+fn what_an_output_does_after_silence_is_what_the_document_says() {
+    // INFY 3.1: what delivered delivers again when it hears a command. MEGMEET 4: what was shut down starts.
+    assert_eq!(infy::Message::AFTER_SILENCE, AfterSilence::Resumes);
+    assert_eq!(megmeet::Message::AFTER_SILENCE, AfterSilence::Starts);
+    // Huawei 11.1: it delivers its defaults. TRIO 3.3: what was switched off starts by a command alone.
+    assert_eq!(huawei::Message::AFTER_SILENCE, AfterSilence::Starts);
+    assert_eq!(trio::Message::AFTER_SILENCE, AfterSilence::Keeps);
+    // GCP 3.4 says that a module goes off, and not whether it comes back. Maxwell says nothing, and Daly has no output.
+    assert_eq!(gcp::Message::AFTER_SILENCE, AfterSilence::Unknown);
+    assert_eq!(mxr::Message::AFTER_SILENCE, AfterSilence::Unknown);
+    assert_eq!(daly::Message::AFTER_SILENCE, AfterSilence::Unknown);
 }
 
 #[test]

@@ -174,7 +174,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         })
     }
 
-    /// Draws the trouble of a phase. Each kind happens in the first cycles.
+    /// Draws the trouble of a phase.
     fn draw_trouble(&mut self, is_stopped: bool) {
         let kind = usize::try_from(self.random.below(4)).expect("below 4");
         // What another controller sets while a group delivers ends that, as one of the tests shows.
