@@ -3,7 +3,7 @@
 use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
 use canspec_runtime::client::{Client, Duty, Heard, Output, Pace, Step};
 use canspec_runtime::sim::{Answer, Device, Keeper};
-use canspec_runtime::{Addressed, Error, Frame, Protocol, Quantities, Quantity, Reason, Received, Request};
+use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Reason, Received, Request};
 use canspec_tests::{
     devices_any_vendor as feature, devices_any_vendor_in_steps as in_steps, devices_any_vendor_switched as in_f32,
     features_controller_report as charging, infy_in_steps,
