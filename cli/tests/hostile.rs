@@ -12,7 +12,7 @@ use std::time::Duration;
 use wait4::Wait4;
 
 /// Longest time of the processor for one file.
-const TIME: Duration = Duration::from_secs(4);
+const TIME: Duration = Duration::from_secs(20);
 
 /// Most memory for one file, in bytes.
 const MEMORY: u64 = 200 << 20;

@@ -34,24 +34,29 @@ fn decoded(log: &str) -> (String, String) {
     (text(&output.stdout), text(&output.stderr))
 }
 
-/// Returns the processor time of a call.
+/// Returns the processor time of a call, without that of the system, which hands out memory when it likes.
 fn time(folder: &Path, arguments: &[&str]) -> Duration {
     let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
     canspec.args(arguments).current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null());
     let used = canspec.spawn().and_then(|mut child| child.wait4()).expect("the command starts");
-    used.rusage.utime + used.rusage.stime
+    used.rusage.utime
 }
 
-/// Tests that eight times as much takes at most fourteen times as long; what is quadratic takes 64 times as long.
+/// Tests that eight times as much takes less than 32 times as long: what is linear takes 8 times, and what is
+/// quadratic 64 times. A busy machine has a second chance.
 fn is_linear(write: impl Fn(&mut dyn Write, usize), file: &str, few: usize, arguments: &[&str]) {
-    let times = [few, few * 8].map(|count| {
-        let folder = folder();
-        let mut out = Vec::new();
-        write(&mut out, count);
-        fs::write(folder.path().join(file), out).expect("the folder can be written");
-        time(folder.path(), arguments)
-    });
-    assert!(times[1] < times[0] * 14 + Duration::from_millis(200), "{times:?}");
+    let times = || {
+        [few, few * 8].map(|count| {
+            let folder = folder();
+            let mut out = Vec::new();
+            write(&mut out, count);
+            fs::write(folder.path().join(file), out).expect("the folder can be written");
+            time(folder.path(), arguments)
+        })
+    };
+    let is_linear = |[short, long]: [Duration; 2]| long < short * 32;
+    let first = times();
+    assert!(is_linear(first) || is_linear(times()), "{first:?}");
 }
 
 #[test]
@@ -125,7 +130,7 @@ fn messages_of_many_senders_are_joined_in_linear_time() {
     fs::write(folder.path().join("bus.log"), log).expect("the folder can be written");
     let shown = text(&canspec(folder.path(), &["decode", "--spec", path, "bus.log"]).stdout);
     assert!(shown.contains("6 of 30 bytes came"), "{shown}");
-    is_linear(write, "bus.log", 8_000, &["decode", "--spec", path, "bus.log"]);
+    is_linear(write, "bus.log", 4_000, &["decode", "--spec", path, "bus.log"]);
 }
 
 #[test]
