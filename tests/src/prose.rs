@@ -1,4 +1,4 @@
-//! The sentences that people read, in Markdown, in comments and in diagnostics. Help texts are doc comments.
+//! The sentences that people read on pages and in diagnostics.
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
@@ -7,6 +7,8 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 pub struct Sentence {
     /// Number of the line where its paragraph begins.
     pub line: usize,
+    /// Number of its paragraph in the text.
+    pub paragraph: usize,
     /// Its text, without marks of Markdown.
     pub text: String,
 }
@@ -33,11 +35,7 @@ impl Sentence {
 pub fn sentences(name: &str, text: &str) -> Vec<Sentence> {
     match name.rsplit_once('.').map(|(_, ending)| ending) {
         Some("md") => of_markdown(text, 1).collect(),
-        Some("rs") => of_comments(text, &["///", "//!", "//"]),
-        Some("lua") => of_comments(text, &["---", "--"]),
-        Some("toml" | "yaml" | "py") => of_comments(text, &["#"]),
         Some("stderr") => of_diagnostics(text).collect(),
-        _ if name == "justfile" || name.starts_with(".ci/") => of_comments(text, &["#"]),
         _ => Vec::new(),
     }
 }
@@ -54,25 +52,13 @@ pub fn wide_lines(text: &str, columns: usize) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Returns the sentences of comments. Adjacent lines with the same mark are one text.
-fn of_comments(text: &str, marks: &[&str]) -> Vec<Sentence> {
-    let lines: Vec<_> = text.lines().map(|line| comment(line, marks)).collect();
-    let blocks = lines.chunk_by(|one, other| one.map(|(mark, _)| mark) == other.map(|(mark, _)| mark));
-    let mut first = 1;
-    let mut all = Vec::new();
-    for block in blocks {
-        let said: Vec<_> = block.iter().flatten().map(|(_, said)| *said).collect();
-        all.extend(of_markdown(&said.join("\n"), first));
-        first += block.len();
-    }
-    all
-}
-
-/// Splits a comment into its mark and its text.
-fn comment<'a>(line: &'a str, marks: &[&'a str]) -> Option<(&'a str, &'a str)> {
-    let line = line.trim_start();
-    let (mark, said) = marks.iter().find_map(|mark| line.strip_prefix(mark).map(|said| (*mark, said)))?;
-    Some((mark, said.strip_prefix(' ').unwrap_or(said)))
+/// Returns what stands one after the other in a paragraph and has at most `words` words, in runs. What does not end
+/// like a sentence, as a heading or an item does, is in none.
+#[must_use]
+pub fn short_runs(sentences: &[Sentence], words: usize) -> Vec<&[Sentence]> {
+    let is_short = |one: &Sentence| one.words() <= words && one.text.ends_with(['.', '?', '!']);
+    let runs = sentences.chunk_by(|one, other| one.paragraph == other.paragraph && is_short(one) == is_short(other));
+    runs.filter(|run| run.first().is_some_and(is_short)).collect()
 }
 
 /// Returns the messages and the helps of diagnostics.
@@ -89,7 +75,12 @@ fn of_diagnostics(text: &str) -> impl Iterator<Item = Sentence> {
 /// Returns the sentences of a text in Markdown. `first` is the number of its first line.
 fn of_markdown(text: &str, first: usize) -> impl Iterator<Item = Sentence> {
     let line = move |at: usize| first + text.get(..at).map_or(0, |before| before.matches('\n').count());
-    blocks(text).into_iter().flat_map(move |(at, words)| split(&words, line(at)))
+    let sentence = move |line, paragraph, text| Sentence { line, paragraph, text };
+    let blocks = blocks(text).into_iter().enumerate();
+    blocks.flat_map(move |(paragraph, (at, words))| {
+        let line = line(at);
+        split(&words).into_iter().map(move |text| sentence(line, paragraph, text))
+    })
 }
 
 /// Returns each paragraph, heading, item and cell with the place where it begins. No sentence ends within code.
@@ -124,11 +115,10 @@ fn is_inline(tag: TagEnd) -> bool {
 }
 
 /// Splits a block into its sentences.
-fn split(words: &str, line: usize) -> Vec<Sentence> {
+fn split(words: &str) -> Vec<String> {
     let words: Vec<_> = words.split_ascii_whitespace().collect();
     let ends = |word: &&str| word.trim_end_matches(['"', ')']).ends_with(['.', '?', '!']);
-    let sentences = words.split_inclusive(ends).map(|words| words.join(" "));
-    sentences.map(|text| Sentence { line, text }).collect()
+    words.split_inclusive(ends).map(|words| words.join(" ")).collect()
 }
 
 #[cfg(test)]
@@ -137,7 +127,7 @@ mod tests {
 
     /// Returns the sentences of a file with their lines.
     fn found(name: &str, text: &str) -> Vec<(usize, String)> {
-        sentences(name, text).into_iter().map(|Sentence { line, text }| (line, text)).collect()
+        sentences(name, text).into_iter().map(|Sentence { line, text, .. }| (line, text)).collect()
     }
 
     /// Returns how many words the only sentence of a paragraph has.
@@ -219,24 +209,17 @@ mod tests {
     }
 
     #[test]
-    fn lines_of_a_comment_are_one_text_up_to_code_or_another_mark() {
-        let code = "//! One\n//! two\n\nfn a() {\n    /// three\n    ///\n    /// four\n    // five\n    //six\n}\n/// seven\n";
-        assert_eq!(
-            found("code.rs", code),
-            expected(&[(1, "One two"), (5, "three"), (7, "four"), (8, "five six"), (11, "seven")])
-        );
+    fn comments_and_other_files_have_none() {
+        for name in ["a.rs", "a.toml", "a.json", "justfile"] {
+            assert_eq!(found(name, "// one\n# two\n"), Vec::new(), "{name}");
+        }
     }
 
     #[test]
-    fn every_language_has_marks_of_its_own() {
-        let text = "# one\n-- two\n--- three\n// four\n";
-        assert_eq!(found("a.lua", text), expected(&[(2, "two"), (3, "three")]));
-        for name in ["a.toml", "a.yaml", "a.py", "justfile", ".ci/run"] {
-            assert_eq!(found(name, text), expected(&[(1, "one")]), "{name}");
-        }
-        for name in ["a.json", "other", "a/justfile"] {
-            assert_eq!(found(name, text), Vec::new(), "{name}");
-        }
+    fn short_sentences_of_one_paragraph_run_until_a_long_one_or_what_is_none() {
+        let page = "A b. C d. E f g h.\n\nOne. Two three four five. Six.\n\n- item\n";
+        let runs: Vec<_> = short_runs(&sentences("page.md", page), 3).iter().map(|run| run.len()).collect();
+        assert_eq!(runs, [2, 1, 1]);
     }
 
     #[test]
