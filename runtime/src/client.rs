@@ -132,8 +132,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// The request ends what is [held](Self::hold) of the same message by the same access, if it goes to
     /// one of its modules. It may not be known whether it does. What says the same goes on. The ticket of what
-    /// is ended has no event. So no renewal undoes a stop of all modules. To read something ends nothing that
-    /// is set.
+    /// is ended has no event. So no renewal undoes a stop of all modules. Reading never ends a held setting.
     ///
     /// The request waits until no answer to an earlier one can be taken for one to it. To hold the new value
     /// instead is faster.

@@ -287,8 +287,8 @@ impl<P: Protocol> Received<P> {
 
     /// Refuses a frame that would not be recognised as what it was made from.
     ///
-    /// A frame of the received message under the received identifier always is. For no signal shares a bit with what
-    /// selects a message.
+    /// A re-encoded frame with the received identifier is always recognised, because signals never share bits with
+    /// selectors.
     #[cold]
     fn check_recognised(&self, frame: Frame) -> Result<(), Error> {
         match Self::decode_by(self.model(), &frame) {

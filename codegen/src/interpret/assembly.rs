@@ -18,8 +18,8 @@ use crate::model::{
 /// The parts that came so far. `M` is what the caller remembers of each frame.
 ///
 /// A device sends the parts of a message in their order. Another message begins with a part whose number is not greater
-/// than that of the part before, or which has another counter. After a request that carries no part, the next part of the
-/// device begins one, too. A frame that is repeated at once counts once. What goes to a device is never mixed with what
+/// than that of the part before, or which has another counter. The device's next part after a plain request also starts a
+/// new message. A frame that is repeated at once counts once. What goes to a device is never mixed with what
 /// comes from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {

@@ -73,8 +73,8 @@ impl Protocol {
     }
     /// Returns the kind of address of the controller that sends the requests of a mode.
     ///
-    /// Two peers can both have a usual address. Then the controller's is that which a J1939 transport calls the
-    /// sender's, or which stands without the other in the requests of another mode.
+    /// If both peers have a usual address, the controller's is the one that a J1939 transport calls the source, or
+    /// else the one that stands alone in the requests of another mode.
     pub(crate) fn controller(&self, mode: &Mode) -> Option<AddressTypeId> {
         let own = usual(mode);
         let is_known = |address: &&&Address| self.is_source(address) || self.is_alone(address);

@@ -88,9 +88,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// counts. Others wait for answers to both. A request that is replaced faster than that is never known to be in effect. It is lost,
     /// however, if nobody answers.
     ///
-    /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. What was
-    /// asked before of other modules, too, stays and can be sent after a new value. [Cancel](Self::cancel) it if
-    /// it must not be, or [hurry](Self::hurry) the new value.
+    /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. An earlier
+    /// request that also addresses other modules survives, and may be sent after the new value. Unless it may be,
+    /// [cancel](Self::cancel) it, or [hurry](Self::hurry) the new value.
     ///
     /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
     /// that it is on. [`hold_after`](Self::hold_after) sends the second one only after the first is in effect.

@@ -31,9 +31,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Whenever a round of `first` has shown that it is in effect, the request is sent, once. So it is renewed
     /// as often as `first` is, and each time after it. If its own answer does not come, or says something else,
     /// the module may have restarted. Then both are sent again, `first` before it, as often as the pace says.
-    /// An answer that comes after its wait is late. A module must only take longer to start than the switch-on
-    /// waits for the bus. Then it is never switched on without its set-point. What follows another request goes
-    /// before others that are due, but for hurried ones. It waits anew while a round of what it follows is due, and
+    /// An answer that comes after its wait is late. The module is never switched on without its set-point if its
+    /// restart outlasts the wait of the switch-on for the bus. What follows another request goes before others that
+    /// are due, but for hurried ones. It waits anew while a round of what it follows is due, and
     /// after a program has not called `poll` for a while.
     ///
     /// Another request can follow this one, and so on. When a new round of `first` begins, all that follows it
