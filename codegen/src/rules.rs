@@ -48,7 +48,7 @@ Every error and every warning about a spec names the broken rule, as in `error[o
 
 Each block of YAML extends the smallest spec of the [language reference](language.md). The first
 block of a rule breaks it, and the block after `Write instead` does not. An intended warning can be
-allowed with a reason: see [`allow`](language.md#allow). An error cannot be allowed.
+allowed with a reason: see [`allow`](language/reference.md#allow). An error cannot be allowed.
 
 A stage begins if the stage before it found no error. So a corrected spec can show errors that were
 there before.

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parent.parent.parent
 SPECS = ROOT / "specs"
 SPEC = SPECS / "trio.yaml"
 FIRST_LINE = "# yaml-language-server: $schema=canspec.schema.json\n"
-REFERENCE = (ROOT / "docs" / "language.md").read_text(encoding="utf-8")
+REFERENCE = (ROOT / "docs" / "language" / "reference.md").read_text(encoding="utf-8")
 
 # Lines of the spec, after which something is written.
 SIGNAL = "      operation:       {bytes: 1, type: operation, erratum: T7}\n"
@@ -64,7 +64,7 @@ class Edited:
 
 def rows(heading):
     """Returns the cells of each row in the first table of a section of the language reference."""
-    section = re.split(rf"^### {re.escape(heading)}$", REFERENCE, flags=re.MULTILINE)[1]
+    section = re.split(rf"^## {re.escape(heading)}$", REFERENCE, flags=re.MULTILINE)[1]
     table = re.search(r"^\| (?:key|entry) .*\n\|[-|]*\n((\|.*\n)*)", section, flags=re.MULTILINE)[1]
     return [row.split("|")[1:] for row in table.splitlines()]
 

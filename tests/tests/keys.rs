@@ -12,7 +12,7 @@ use canspec_tests::{Frames, models};
 use rayon::prelude::*;
 use serde_yaml::{Mapping, Value};
 
-const REFERENCE: &str = include_str!("../../docs/language.md");
+const REFERENCE: &str = include_str!("../../docs/language/reference.md");
 
 /// A field of each role.
 const SPEC: &str = r#"
@@ -229,7 +229,7 @@ fn stated(key: Key) -> BTreeSet<char> {
 /// Returns the cells of a key in the table of the reference.
 fn row(key: Key) -> Vec<&'static str> {
     let name = format!("`{}`", key.name());
-    let (_, text) = REFERENCE.split_once("### Fields").expect("the reference has fields");
+    let (_, text) = REFERENCE.split_once("\n## Fields").expect("the reference has fields");
     let rows = text.lines().filter_map(|line| line.strip_prefix('|')).map(|line| line.split('|').collect::<Vec<_>>());
     let row = rows.into_iter().find(|cells| cells[0].contains(&name));
     row.unwrap_or_else(|| panic!("the reference has no {name}"))

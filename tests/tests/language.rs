@@ -1,4 +1,4 @@
-//! The language reference and the vendor guide: their YAML is compiled, and the reference lists every key there is.
+//! The pages of the language and the vendor guide: their YAML is compiled, and the reference lists every key there is.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,7 +7,10 @@ use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::Source;
 use canspec_codegen::{Bases, compile};
 
-const REFERENCE: &str = "docs/language.md";
+/// The first page of the language. It starts with the smallest whole spec.
+const LANGUAGE: &str = "docs/language.md";
+const LANGUAGE_PAGES: &str = "docs/language";
+const REFERENCE: &str = "docs/language/reference.md";
 const README: &str = "README.md";
 const VENDOR_GUIDE: &str = "docs/adding-a-vendor.md";
 const RULES: &str = "docs/rules.md";
@@ -44,8 +47,13 @@ const PLACES: [(&str, &str); 26] = [
 ];
 
 #[test]
-fn every_block_of_the_reference_does_what_it_says() {
-    check_blocks(REFERENCE);
+fn every_block_of_the_language_does_what_it_says() {
+    check_blocks(LANGUAGE);
+}
+
+#[test]
+fn every_block_of_the_pages_on_the_language_does_what_it_says() {
+    check_pages(LANGUAGE_PAGES);
 }
 
 #[test]
@@ -54,29 +62,25 @@ fn every_block_of_the_vendor_guide_does_what_it_says() {
 }
 
 #[test]
-fn every_block_of_the_readme_adds_to_the_smallest_spec_of_the_reference() {
+fn every_block_of_the_readme_adds_to_the_smallest_spec() {
     check_blocks_beside(README);
 }
 
 #[test]
 fn every_block_of_the_how_to_pages_does_what_it_says() {
-    let folder = format!("{}/../{HOW_TO}", env!("CARGO_MANIFEST_DIR"));
-    let pages = fs::read_dir(&folder).expect("the folder is there").flatten();
-    for page in pages {
-        check_blocks_beside(&format!("{HOW_TO}/{}", page.file_name().to_string_lossy()));
-    }
+    check_pages(HOW_TO);
 }
 
 #[test]
-fn every_block_of_the_rules_adds_to_the_smallest_spec_of_the_reference() {
+fn every_block_of_the_rules_adds_to_the_smallest_spec() {
     check_blocks_beside(RULES);
 }
 
 #[test]
 fn the_reference_lists_exactly_the_keys_that_are_read() {
-    let text = read(REFERENCE);
-    let blocks = blocks(&text);
-    let smallest = &blocks.first().expect("the reference starts with a whole spec").lines;
+    let (language, text) = (read(LANGUAGE), read(REFERENCE));
+    let blocks = blocks(&language);
+    let smallest = &blocks.first().expect("the language starts with a whole spec").lines;
     for (heading, probe) in PLACES {
         let spec = merged(smallest, &numbered(probe));
         assert_eq!(listed_keys(&text, heading), allowed_keys(&compiled(&spec)), "the keys below `{heading}`");
@@ -108,11 +112,20 @@ fn check_blocks(document: &str) {
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
 }
 
-/// Checks the blocks of a document as additions to the smallest spec of the reference.
+/// Checks the blocks of all pages in a folder as additions to the smallest spec of the language.
+fn check_pages(folder: &str) {
+    let path = format!("{}/../{folder}", env!("CARGO_MANIFEST_DIR"));
+    let pages = fs::read_dir(&path).expect("the folder is there").flatten();
+    for page in pages {
+        check_blocks_beside(&format!("{folder}/{}", page.file_name().to_string_lossy()));
+    }
+}
+
+/// Checks the blocks of a document as additions to the smallest spec of the language.
 fn check_blocks_beside(document: &str) {
-    let (reference, text) = (read(REFERENCE), read(document));
-    let whole = blocks(&reference);
-    let smallest = &whole.first().expect("the reference starts with a whole spec").lines;
+    let (language, text) = (read(LANGUAGE), read(document));
+    let whole = blocks(&language);
+    let smallest = &whole.first().expect("the language starts with a whole spec").lines;
     let complaints: Vec<_> = blocks(&text).iter().filter_map(|block| complaint(document, smallest, block)).collect();
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
 }
@@ -143,8 +156,8 @@ fn listing(document: &str, spec: &[Line], diagnostics: &Diagnostics) -> String {
 /// Compiles a spec, which can be based on the smallest one or on a built-in one.
 fn compiled(spec: &[Line]) -> Diagnostics {
     let lines: Vec<_> = spec.iter().map(|(_, line)| *line).collect();
-    let reference = read(REFERENCE);
-    let smallest = blocks(&reference).swap_remove(0).lines.iter().map(|(_, line)| *line).collect::<Vec<_>>().join("\n");
+    let language = read(LANGUAGE);
+    let smallest = blocks(&language).swap_remove(0).lines.iter().map(|(_, line)| *line).collect::<Vec<_>>().join("\n");
     let bases: Bases = built_in().chain([("charger".to_owned(), smallest)]).collect();
     let source = Source::new("spec.yaml", lines.join("\n").into_bytes()).and_then(|source| bases.add_to(source));
     source.map_or_else(|diagnostics| diagnostics, |source| compile(source).diagnostics)

@@ -7,7 +7,7 @@ use canspec_codegen::syntax::ast::Key;
 use serde_json::Value as Schema;
 use serde_yaml::{Mapping, Value};
 
-const REFERENCE: &str = include_str!("../../../docs/language.md");
+const REFERENCE: &str = include_str!("../../../docs/language/reference.md");
 
 /// Places of fields in a message: there the reference's letter M counts.
 const OF_MESSAGES: [&str; 2] = ["messages.*.fields.*", "messages.*.value"];
@@ -136,7 +136,7 @@ fn places(letter: char) -> Vec<&'static str> {
 /// Returns the letters in the column "used in" of the reference.
 fn used_in(key: Key) -> Vec<char> {
     let name = format!("`{}`", key.name());
-    let (_, text) = REFERENCE.split_once("### Fields").expect("the reference has fields");
+    let (_, text) = REFERENCE.split_once("\n## Fields").expect("the reference has fields");
     let rows = text.lines().filter_map(|line| line.strip_prefix('|')).map(|line| line.split('|').collect::<Vec<_>>());
     let row = rows.into_iter().find(|cells| cells[0].contains(&name));
     let row = row.unwrap_or_else(|| panic!("the reference has no {name}"));
