@@ -17,9 +17,11 @@ const RULES: &str = "docs/rules.md";
 const HOW_TO: &str = "docs/how-to";
 
 /// Headings of the reference, each with a spec fragment in which `nothing` stands where the keys below that heading may.
-const PLACES: [(&str, &str); 26] = [
+const PLACES: [(&str, &str); 32] = [
     ("The top level", "nothing: x"),
     ("`document`", "document: {title: t, version: v, nothing: x}"),
+    ("`sides`", "sides: {nothing: x}"),
+    ("`reserved`", "reserved: {nothing: x}"),
     ("Fields", "identifier:\n  command: {bits: 28..16, nothing: x}"),
     ("Fields", "header:\n  function: {bytes: 0, nothing: x}"),
     ("Fields", "types:\n  level: {nothing: x}"),
@@ -27,12 +29,15 @@ const PLACES: [(&str, &str); 26] = [
     ("Fields", "messages:\n  other: {access: [read], fields: {level: {nothing: x}}}"),
     ("Fields", "messages:\n  other: {access: [read], value: {nothing: x}}"),
     ("Fields", "models:\n  small: {types: {level: {nothing: x}}}"),
+    ("Named values", "types:\n  level: {values: {0: {nothing: x}}}"),
     ("Status bits", "types:\n  level: {status: {low: {bit: 0, nothing: x}}}"),
     ("Examples of a type", "types:\n  level: {examples: [{bytes: 00, means: 0, nothing: x}]}"),
     ("`addressing`", "addressing:\n  all: {nothing: x}"),
     ("`access`", "access:\n  scan: {nothing: x}"),
     ("`foreign`", "foreign:\n  others: {match: {command: 1}, nothing: x}"),
     ("`messages`", "messages:\n  other: {access: [read], nothing: x}"),
+    ("`parts`", "messages:\n  other: {access: [read], parts: {nothing: x}}"),
+    ("`transports`", "transports:\n  tp: {nothing: x}"),
     ("Examples of frames", "messages:\n  other: {access: [read], examples: [{nothing: x}]}"),
     ("Examples of frames", "examples:\n  start: {frames: [{nothing: x}]}"),
     ("`examples`", "examples:\n  start: {frames: [], nothing: x}"),
@@ -41,6 +46,7 @@ const PLACES: [(&str, &str); 26] = [
     ("Paths", "quantities:\n  voltage: {read: {signal: a.b, nothing: x}}"),
     ("`product`", "product: {nothing: x}"),
     ("`timing`", "timing:\n  pause: {time: 1 s, nothing: x}"),
+    ("`after_silence`", "after_silence: {nothing: x}"),
     ("`procedures`", "procedures:\n  start: {steps: [], nothing: x}"),
     ("`errata`", "errata:\n  E1: {kind: note, prints: a, uses: b, because: c, nothing: x}"),
     ("`allow`", "allow: [{rule: section, at: messages, because: b, nothing: x}]"),
@@ -85,6 +91,14 @@ fn the_reference_lists_exactly_the_keys_that_are_read() {
         let spec = merged(smallest, &numbered(probe));
         assert_eq!(listed_keys(&text, heading), allowed_keys(&compiled(&spec)), "the keys below `{heading}`");
     }
+}
+
+#[test]
+fn every_table_of_keys_in_the_reference_is_compared() {
+    let text = read(REFERENCE);
+    let parts = text.split("\n## ").filter(|part| part.contains("\n| key |"));
+    let headings: BTreeSet<_> = parts.filter_map(|part| part.lines().next()).collect();
+    assert_eq!(headings, PLACES.iter().map(|(heading, _)| *heading).collect());
 }
 
 /// A line of a document and its number, counted from 1.
