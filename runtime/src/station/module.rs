@@ -40,6 +40,8 @@ pub struct Module<P: Protocol> {
     pub duty: Duty,
     /// What reads it.
     pub reads: [Read; 3],
+    /// What was asked once in its last round. What the driver has not taken until the next one is not sent any more.
+    pub once: Option<Ticket>,
     /// When it has said whether it delivers.
     pub said_at: u32,
     pub voltage_mv: Option<Said<i32>>,
@@ -162,6 +164,7 @@ impl<P: Protocol> Module<P> {
             heard: None,
             duty: Duty::new(node),
             reads: [Read::NONE; 3],
+            once: None,
             said_at: 0,
             voltage_mv: None,
             current_ma: None,
@@ -221,8 +224,8 @@ impl<P: Protocol> Module<P> {
 
     /// Ends all that is asked of it.
     pub fn end<const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
-        let reads = self.reads.iter_mut();
-        reads.filter_map(|read| read.ticket.take()).for_each(|ticket| client.cancel(ticket));
+        let reads = self.reads.iter_mut().map(|read| &mut read.ticket);
+        reads.filter_map(Option::take).for_each(|ticket| client.cancel(ticket));
         self.duty.end(client);
         self.goal = Goal::Read;
     }

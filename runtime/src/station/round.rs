@@ -32,8 +32,11 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Reads a module and tells it what it is to do. One that does not answer is only told.
     fn ask(&mut self, place: usize, now: u32) -> Result<(), NotHeld> {
-        let Some(module) = self.modules.get(place) else { return Ok(()) };
+        let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
         let Some(target) = P::module(module.node.into()) else { return Ok(()) };
+        // What waits for the driver since the last round may not be what is wanted now.
+        module.once.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
+        let Some(module) = self.modules.get(place) else { return Ok(()) };
         let (goal, heard) = (self.goal(module), module.heard);
         match (self.possible(place, goal, target), heard) {
             (Goal::Leave, _) => {
@@ -105,8 +108,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if is_stop {
             self.client.hurry(ticket, now);
         }
-        let Some([first, ..]) = self.modules.get_mut(place).map(|module| &mut module.reads) else { return Ok(()) };
-        *first = Read::of(ticket);
+        let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
+        let [first, ..] = &mut module.reads;
+        (*first, module.once) = (Read::of(ticket), Some(ticket));
         Ok(())
     }
 
@@ -118,7 +122,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if let Some(request) = group {
             self.has_room()?;
             let once = Pace { tries: 1, ..pace };
-            let _ = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
+            let ticket = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
+            self.modules.get_mut(place).into_iter().for_each(|module| module.once = Some(ticket));
         }
         for (index, request) in request::readings::<P>(target).into_iter().enumerate() {
             let is_read = self.modules.get(place).and_then(|module| module.reads.get(index)).is_some_and(Read::is_on);

@@ -1,13 +1,16 @@
 //! What a station makes of what modules say.
 
-use super::bus::{Charger, Grouped, reply, settings, volts};
+use std::borrow::ToOwned;
+use std::vec::Vec;
+
+use super::bus::{Charger, Grouped, grouped, reply, separate, settings, volts};
 use super::deliver::{deliver, known};
 use crate::Severity;
 use crate::client::Output;
 use crate::station::{Event, Found, Known};
 
 /// Returns the events of charger 1.
-fn of_first(bus: &mut Grouped) -> std::vec::Vec<Event> {
+fn of_first(bus: &mut Grouped) -> Vec<Event> {
     let is_its = |event: &Event| std::format!("{event:?}").contains("node: 1");
     bus.events().into_iter().map(|(_, event)| event).filter(is_its).collect()
 }
@@ -172,6 +175,27 @@ fn what_the_driver_does_not_take_is_sent_later() {
     bus.run(6000);
     assert!(bus.sent().len() >= 8);
     assert!(bus.station.is_off(1, bus.clock()));
+}
+
+#[test]
+fn what_the_driver_does_not_take_for_long_does_not_pile_up() {
+    let mut bus = grouped(settings(Found::Off));
+    bus.chargers.clear();
+    bus.is_taken = false;
+    bus.run(8500);
+    bus.is_taken = true;
+    bus.run(8900);
+    let sent: Vec<_> = bus.sent().iter().map(|sent| sent.split(": ").last().unwrap_or_default().to_owned()).collect();
+    assert_eq!(sent, ["1 off", "2 off"]);
+    // The same is true of what asks for a group.
+    let mut bus = separate(settings(Found::Off));
+    bus.charger(1).refuses = Some((7, 1));
+    bus.run(1500);
+    bus.is_taken = false;
+    bus.run(8500);
+    bus.is_taken = true;
+    bus.run(8900);
+    assert_eq!(bus.sent().iter().filter(|sent| sent.ends_with("group?")).count(), 3, "in two rounds, and then once");
 }
 
 #[test]
