@@ -43,6 +43,7 @@
 //! Frames that the program itself has sent must not be handed over.
 
 mod drive;
+mod driver;
 mod event;
 mod hear;
 mod known;
@@ -56,7 +57,8 @@ mod tests;
 use crate::client::{Bus, Client, Heard, Output, Step as Asked, Ticket};
 use crate::clock::{Steady, has_come};
 use crate::{Addressed, AfterSilence, Protocol, Quantities, Quantity, Received, Replies, Request, Severity};
-pub use drive::{Drive, Driver, NonBlocking, pump};
+pub use drive::{Drive, pump};
+pub use driver::{Blocking, Driver, NonBlocking, listen};
 pub use event::{Event, Rival, Step};
 use hear::sender;
 pub use known::Known;

@@ -1,60 +1,8 @@
 //! What carries the frames of a station: a driver that does not block, or asynchronous functions.
 
-use embedded_can::nb::Can;
-
-use super::{Event, Station, Step};
+use super::{Driver, Event, Station, Step};
 use crate::clock::time_left;
-use crate::frame::classic;
 use crate::{Addressed, Frame, Quantities};
-
-/// A driver of a bus that does not block.
-///
-/// It must not give the frames back that it has sent itself.
-pub trait Driver {
-    /// What fails.
-    type Error;
-
-    /// Sends a frame, or returns `false` if the driver does not take it now: it is full, or the bus is away.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the driver is of no use any more.
-    fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error>;
-
-    /// Returns the next frame that has come, if there is one.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the driver is of no use any more.
-    fn receive(&mut self) -> Result<Option<Frame>, Self::Error>;
-}
-
-/// A driver that implements [`embedded_can::nb::Can`], as those of microcontrollers do.
-#[derive(Clone, Copy, Debug)]
-pub struct NonBlocking<C>(pub C);
-
-impl<C: Can<Frame: embedded_can::Frame>> Driver for NonBlocking<C> {
-    type Error = C::Error;
-
-    fn send(&mut self, frame: &Frame) -> Result<bool, C::Error> {
-        // A frame type that cannot hold a classic frame carries none.
-        let Some(frame) = frame.to() else { return Ok(false) };
-        match self.0.transmit(&frame) {
-            // What the driver drops for a frame of more weight is lost, as on the bus. It is sent again.
-            Ok(_) => Ok(true),
-            Err(nb::Error::WouldBlock) => Ok(false),
-            Err(nb::Error::Other(error)) => Err(error),
-        }
-    }
-
-    fn receive(&mut self) -> Result<Option<Frame>, C::Error> {
-        match self.0.receive() {
-            Ok(frame) => Ok(classic(&frame)),
-            Err(nb::Error::WouldBlock) => Ok(None),
-            Err(nb::Error::Other(error)) => Err(error),
-        }
-    }
-}
 
 /// Carries the frames of a station by a driver.
 #[derive(Clone, Copy, Debug)]

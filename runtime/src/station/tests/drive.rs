@@ -8,13 +8,13 @@ use std::collections::VecDeque;
 use std::vec::Vec;
 
 use embedded_can::nb::Can;
-use embedded_can::{ErrorKind, Id};
+use embedded_can::{ErrorKind, Id, blocking};
 
 use super::bus::{Charger, reply, settings};
 use super::chargers::{AtOnce, Message};
 use crate::Frame;
 use crate::client::Output;
-use crate::station::{Drive, Driver, Event, Found, Known, NonBlocking, Station, pump};
+use crate::station::{Blocking, Drive, Driver, Event, Found, Known, NonBlocking, Station, listen, pump};
 
 type Lone = Station<Message<AtOnce>, 1, 1, 6>;
 
@@ -90,8 +90,24 @@ impl Can for &Wire {
     }
 }
 
+impl blocking::Can for &Wire {
+    type Frame = Frame;
+    type Error = Broken;
+
+    fn transmit(&mut self, frame: &Frame) -> Result<(), Broken> {
+        if self.is_broken.get() || !self.carries(frame) { Err(Broken) } else { Ok(()) }
+    }
+
+    fn receive(&mut self) -> Result<Frame, Broken> {
+        unreachable!("it would wait for a frame")
+    }
+}
+
 /// Turns until a time, and returns what has happened.
-fn turned(wire: &Wire, station: &mut Lone, drive: &mut Drive<NonBlocking<&Wire>>, until: u32) -> Vec<Event> {
+fn turned<D>(wire: &Wire, station: &mut Lone, drive: &mut Drive<D>, until: u32) -> Vec<Event>
+where
+    D: Driver<Error = Broken>,
+{
     let mut events = Vec::new();
     while wire.now.get() < until {
         let next = drive.turn(station, || wire.now.get(), |_, event| events.push(event)).expect("the driver works");
@@ -132,6 +148,118 @@ fn a_driver_that_is_of_no_use_ends_the_turn() {
     }
     wire.is_broken.set(false);
     assert_eq!(turned(&wire, &mut station, &mut drive, 2900), FOUND);
+}
+
+#[test]
+fn a_driver_that_blocks_sends_while_frames_come_from_elsewhere() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(Blocking::new(&wire, || Ok(wire.next())));
+    assert_eq!(turned(&wire, &mut station, &mut drive, 1100), FOUND);
+    assert_eq!(wire.sent.borrow()[..3], [0, 20, 40], "the gap is 20 ms");
+}
+
+#[test]
+fn a_driver_that_blocks_ends_the_turn_where_either_half_fails() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(Blocking::new(&wire, || if wire.now.get() > 500 { Err(Broken) } else { Ok(None) }));
+    wire.is_broken.set(true);
+    assert_eq!(drive.turn(&mut station, || 0, |_, _| {}), Err(Broken));
+    wire.is_broken.set(false);
+    wire.now.set(600);
+    assert_eq!(drive.turn(&mut station, || 600, |_, _| {}), Err(Broken));
+    assert_eq!(*wire.sent.borrow(), []);
+}
+
+/// Frames that have come, some of which are remote frames. Then the driver fails.
+struct Arrivals(VecDeque<Arrival>);
+
+struct Arrival {
+    frame: Frame,
+    is_remote: bool,
+}
+
+impl embedded_can::Frame for Arrival {
+    fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
+        <Frame as embedded_can::Frame>::new(id, data).map(|frame| Self { frame, is_remote: false })
+    }
+
+    fn new_remote(_: impl Into<Id>, _: usize) -> Option<Self> {
+        None
+    }
+
+    fn is_extended(&self) -> bool {
+        embedded_can::Frame::is_extended(&self.frame)
+    }
+
+    fn is_remote_frame(&self) -> bool {
+        self.is_remote
+    }
+
+    fn id(&self) -> Id {
+        embedded_can::Frame::id(&self.frame)
+    }
+
+    fn dlc(&self) -> usize {
+        embedded_can::Frame::dlc(&self.frame)
+    }
+
+    fn data(&self) -> &[u8] {
+        embedded_can::Frame::data(&self.frame)
+    }
+}
+
+impl Can for Arrivals {
+    type Frame = Arrival;
+    type Error = Broken;
+
+    fn transmit(&mut self, _: &Arrival) -> nb::Result<Option<Arrival>, Broken> {
+        Err(nb::Error::WouldBlock)
+    }
+
+    fn receive(&mut self) -> nb::Result<Arrival, Broken> {
+        self.0.pop_front().ok_or(nb::Error::WouldBlock)
+    }
+}
+
+impl blocking::Can for Arrivals {
+    type Frame = Arrival;
+    type Error = Broken;
+
+    fn transmit(&mut self, _: &Arrival) -> Result<(), Broken> {
+        Err(Broken)
+    }
+
+    fn receive(&mut self) -> Result<Arrival, Broken> {
+        self.0.pop_front().ok_or(Broken)
+    }
+}
+
+/// Returns two reports, each behind a remote frame, and what carries them.
+fn arrivals() -> ([Frame; 2], Arrivals) {
+    let reports = [0, 1].map(|node| reply(10, node, [0x0F, 0xA0, 0, 0]));
+    let both = |frame| [true, false].map(|is_remote| Arrival { frame, is_remote });
+    (reports, Arrivals(reports.into_iter().flat_map(both).collect()))
+}
+
+#[test]
+fn a_remote_frame_does_not_hide_what_has_come_behind_it() {
+    let (reports, arrivals) = arrivals();
+    let mut driver = NonBlocking(arrivals);
+    let received: [_; 3] = core::array::from_fn(|_| driver.receive());
+    assert_eq!(received, [Ok(Some(reports[0])), Ok(Some(reports[1])), Ok(None)]);
+}
+
+#[test]
+fn a_listener_hands_over_data_frames_until_it_is_told_to_end_or_the_driver_fails() {
+    let mut heard = Vec::new();
+    let (reports, mut all) = arrivals();
+    let ended = listen(&mut all, |frame| {
+        heard.push(frame);
+        true
+    });
+    assert_eq!((ended, heard), (Err(Broken), reports.to_vec()));
+    let (_, mut rest) = arrivals();
+    assert_eq!((listen(&mut rest, |_| false), rest.0.len()), (Ok(()), 2));
 }
 
 /// A frame type that holds no frame.
@@ -183,9 +311,23 @@ impl Can for Useless {
     }
 }
 
+impl blocking::Can for Useless {
+    type Frame = Never;
+    type Error = Broken;
+
+    fn transmit(&mut self, _: &Never) -> Result<(), Broken> {
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<Never, Broken> {
+        Err(Broken)
+    }
+}
+
 #[test]
 fn a_driver_of_frames_that_hold_none_takes_none() {
     assert_eq!(NonBlocking(Useless).send(&reply(9, 1, [0; 4])), Ok(false));
+    assert_eq!(Blocking::new(Useless, || Ok(None)).send(&reply(9, 1, [0; 4])), Ok(false));
 }
 
 #[test]
