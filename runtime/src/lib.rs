@@ -14,13 +14,14 @@
 //! | `defmt` | `defmt::Format` |
 //! | `arbitrary` | `arbitrary::Arbitrary` of messages and frames; the crate `arbitrary` needs the standard library |
 //! | `slcan` | none: it is the [driver](slcan) of serial adapters, for Linux and macOS, and needs the standard library |
+//! | `socketcan` | none: it is the [driver](socketcan) of SocketCAN, for Linux, and needs the standard library and Rust 1.89 |
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 #![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "`cast_signed` is newer than Rust 1.85")]
 #![allow(clippy::inline_always, reason = "what a spec says is constant, and folds only where it is inlined")]
 
-#[cfg(any(test, feature = "slcan"))]
+#[cfg(any(test, feature = "slcan", feature = "socketcan"))]
 extern crate std;
 
 mod address;
@@ -40,6 +41,8 @@ mod frame;
 mod incoming;
 pub mod isotp;
 mod layout;
+#[cfg(any(feature = "slcan", all(feature = "socketcan", target_os = "linux")))]
+mod link;
 mod long;
 mod number;
 mod packed;
@@ -64,6 +67,8 @@ mod signal;
 pub mod sim;
 #[cfg(feature = "slcan")]
 pub mod slcan;
+#[cfg(all(feature = "socketcan", target_os = "linux"))]
+pub mod socketcan;
 pub mod station;
 mod status;
 #[cfg(test)]

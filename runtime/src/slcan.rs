@@ -21,17 +21,14 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::termios::{OptionalActions, isatty, tcgetattr, tcsetattr};
 
 use crate::Frame;
+use crate::client::Bus;
+use crate::link::{Link, is_passing};
 use crate::station::Driver;
 use line::{Line, Lines};
-
-/// How long to wait until an adapter that has gone is looked for again.
-const PATIENCE: Duration = Duration::from_millis(500);
 
 /// The bit rate of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,9 +75,7 @@ impl BitRate {
 pub struct Port {
     path: PathBuf,
     rate: BitRate,
-    file: Option<File>,
-    /// When the adapter was looked for last.
-    tried: Instant,
+    link: Link<File>,
     lines: Lines,
 }
 
@@ -92,39 +87,31 @@ impl Port {
     /// Fails if the port cannot be opened.
     pub fn open(path: impl Into<PathBuf>, rate: BitRate) -> io::Result<Self> {
         let path = path.into();
-        let file = Some(opened(&path, rate)?);
-        Ok(Self { path, rate, file, tried: Instant::now(), lines: Lines::NEW })
+        let link = Link::new(opened(&path, rate)?);
+        Ok(Self { path, rate, link, lines: Lines::NEW })
     }
 
     /// Tests whether the adapter is there.
     pub const fn is_there(&self) -> bool {
-        self.file.is_some()
+        self.link.is_there()
     }
 
     /// Waits until something comes, or until this time has passed.
     pub fn wait(&self, milliseconds: u32) {
-        let Some(port) = &self.file else {
-            std::thread::sleep(Duration::from_millis(milliseconds.into()).min(PATIENCE));
-            return;
-        };
-        let time = Timespec { tv_sec: (milliseconds / 1000).into(), tv_nsec: (milliseconds % 1000 * 1_000_000).into() };
-        // A wait that is interrupted is only shorter.
-        let _ = poll(&mut [PollFd::new(port, PollFlags::IN)], Some(&time));
+        self.link.wait(milliseconds);
     }
 
     /// Opens the port again if it has gone, from time to time.
     fn reopen(&mut self) {
-        if self.file.is_none() && self.tried.elapsed() >= PATIENCE {
-            self.tried = Instant::now();
-            self.file = opened(&self.path, self.rate).ok();
+        if self.link.reopen(|| opened(&self.path, self.rate)) {
             self.lines = Lines::NEW;
         }
     }
 
     /// Takes what has happened to the port: it has gone, or has no room or nothing to say.
     fn failed(&mut self, error: &io::Error) {
-        if !matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) {
-            (self.file, self.tried) = (None, Instant::now());
+        if !is_passing(error) {
+            self.link.lose();
         }
     }
 }
@@ -134,7 +121,7 @@ impl Driver for Port {
 
     fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error> {
         self.reopen();
-        let Some(port) = &mut self.file else { return Ok(false) };
+        let Some(port) = self.link.open() else { return Ok(false) };
         let line = Line::of(frame);
         match port.write(line.bytes()) {
             // A line that was cut is none, and the adapter refuses it.
@@ -152,7 +139,7 @@ impl Driver for Port {
             if let Some(frame) = self.lines.frame() {
                 return Ok(Some(frame));
             }
-            let Some(port) = &mut self.file else { return Ok(None) };
+            let Some(port) = self.link.open() else { return Ok(None) };
             match port.read(self.lines.room()) {
                 Ok(0) => self.failed(&io::ErrorKind::UnexpectedEof.into()),
                 Ok(count) => self.lines.took(count),
@@ -162,6 +149,10 @@ impl Driver for Port {
                 }
             }
         }
+    }
+
+    fn bus(&self) -> Bus {
+        self.link.bus()
     }
 }
 

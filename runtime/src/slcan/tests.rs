@@ -11,6 +11,7 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
 use super::{BitRate, Port};
 use crate::Frame;
+use crate::client::Bus;
 use crate::station::Driver;
 
 /// Returns an adapter, and the path of its port.
@@ -18,18 +19,28 @@ fn adapter() -> (File, String) {
     let adapter = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pty");
     grantpt(&adapter).expect("it is ours");
     unlockpt(&adapter).expect("it is ours");
-    fcntl_setfl(&adapter, OFlags::NONBLOCK).expect("it is open");
     let path = ptsname(&adapter, vec![]).expect("it has a port");
     (File::from(adapter), path.to_str().expect("a path of ASCII").to_string())
 }
 
-/// Returns what the adapter is told.
-fn told(adapter: &mut File) -> String {
-    let mut bytes = [0; 256];
-    match adapter.read(&mut bytes) {
-        Ok(count) => String::from_utf8_lossy(&bytes[..count]).into_owned(),
-        Err(error) if error.kind() == ErrorKind::WouldBlock => String::new(),
-        Err(error) => panic!("{error}"),
+/// Tests what the adapter is told. The kernel may hand it over bit by bit.
+fn is_told(adapter: &mut File, expected: &str) {
+    let mut told = vec![0; expected.len()];
+    fcntl_setfl(&*adapter, OFlags::empty()).expect("it is open");
+    adapter.read_exact(&mut told).expect("it is open");
+    fcntl_setfl(&*adapter, OFlags::NONBLOCK).expect("it is open");
+    assert_eq!(String::from_utf8_lossy(&told), expected);
+    let more = adapter.read(&mut [0]).map_err(|error| error.kind());
+    assert_eq!(more, Err(ErrorKind::WouldBlock), "it is told more");
+}
+
+/// Waits for the next frame, and returns it as a text.
+fn received(port: &mut Port) -> String {
+    loop {
+        if let Ok(Some(frame)) = port.receive() {
+            return frame.to_string();
+        }
+        port.wait(1000);
     }
 }
 
@@ -41,16 +52,16 @@ fn frame() -> Frame {
 fn a_port_opens_the_channel_and_carries_frames_both_ways() {
     let (mut adapter, path) = adapter();
     let mut port = Port::open(path, BitRate::Kbit125).expect("the pty is there");
-    assert_eq!((told(&mut adapter).as_str(), port.is_there()), ("C\rS4\rO\r", true));
+    is_told(&mut adapter, "C\rS4\rO\r");
+    assert!(port.is_there());
     assert_eq!(port.send(&frame()), Ok(true));
-    assert_eq!(told(&mut adapter), "T0284F0038AB000200160040FF\r");
+    is_told(&mut adapter, "T0284F0038AB000200160040FF\r");
     assert_eq!(port.receive(), Ok(None));
     // What the adapter says is not given back to it, and two frames may come at once.
     adapter.write_all(b"z\rt10021133\rT0284F0038AB000200160040FF\r").expect("there is room");
-    let received: [_; 3] = core::array::from_fn(|_| port.receive().map(|frame| frame.map(|frame| frame.to_string())));
-    let expected = [Some("100#1133"), Some("0284F003#AB000200160040FF"), None];
-    assert_eq!(received, expected.map(|text| Ok(text.map(str::to_string))));
-    assert_eq!(told(&mut adapter), "");
+    assert_eq!([received(&mut port), received(&mut port)], ["100#1133", "0284F003#AB000200160040FF"]);
+    assert_eq!(port.receive(), Ok(None));
+    is_told(&mut adapter, "");
 }
 
 #[test]
@@ -61,7 +72,7 @@ fn each_bit_rate_has_its_number() {
     {
         let (mut adapter, path) = adapter();
         let port = Port::open(path, rate).expect("the pty is there");
-        assert_eq!(told(&mut adapter), std::format!("C\rS{number}\rO\r"));
+        is_told(&mut adapter, &std::format!("C\rS{number}\rO\r"));
         drop(port);
     }
 }
@@ -86,7 +97,7 @@ fn an_adapter_that_has_gone_takes_nothing_until_it_is_back() {
     let mut port = Port::open(&link, BitRate::Kbit500).expect("the pty is there");
     drop(adapter);
     assert_eq!(port.receive(), Ok(None));
-    assert_eq!((port.is_there(), port.send(&frame())), (false, Ok(false)));
+    assert_eq!((port.is_there(), port.bus(), port.send(&frame())), (false, Bus::Off, Ok(false)));
     let (mut back, path) = self::adapter();
     std::fs::remove_file(&link).expect("it is there");
     std::os::unix::fs::symlink(&path, &link).expect("the folder can be written");
@@ -94,7 +105,8 @@ fn an_adapter_that_has_gone_takes_nothing_until_it_is_back() {
     assert_eq!((port.send(&frame()), port.is_there()), (Ok(false), false));
     port.wait(10_000);
     assert_eq!(port.send(&frame()), Ok(true));
-    assert_eq!(told(&mut back), "C\rS6\rO\rT0284F0038AB000200160040FF\r");
+    assert_eq!(port.bus(), Bus::On);
+    is_told(&mut back, "C\rS6\rO\rT0284F0038AB000200160040FF\r");
     std::fs::remove_file(&link).expect("it is there");
 }
 

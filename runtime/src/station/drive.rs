@@ -1,6 +1,7 @@
 //! What carries the frames of a station: a driver that does not block, or asynchronous functions.
 
 use super::{Driver, Event, Station, Step};
+use crate::client::Bus;
 use crate::clock::time_left;
 use crate::{Addressed, Frame, Quantities};
 
@@ -10,12 +11,14 @@ pub struct Drive<D> {
     driver: D,
     /// When all was handed over that had come. What comes after that is not older.
     since: Option<u32>,
+    /// What the station was told of the bus.
+    bus: Bus,
 }
 
 impl<D: Driver> Drive<D> {
     /// Returns what carries frames by a driver.
     pub const fn new(driver: D) -> Self {
-        Self { driver, since: None }
+        Self { driver, since: None, bus: Bus::On }
     }
 
     /// Returns the driver.
@@ -23,7 +26,8 @@ impl<D: Driver> Drive<D> {
         &mut self.driver
     }
 
-    /// Hands over what has come, sends what is due, and tells what has happened. Returns when it is to be called again
+    /// Hands over what has come and what the driver knows of the bus, sends what is due, and tells what has happened.
+    /// Returns when it is to be called again
     /// at the latest, if nothing comes before.
     ///
     /// No driver says when a frame came. So each counts as old as it can be. If the program stands still for long, what
@@ -46,6 +50,10 @@ impl<D: Driver> Drive<D> {
             let since = self.since.replace(now).unwrap_or(now);
             while let Some(frame) = self.driver.receive()? {
                 station.handle(&frame, since);
+            }
+            let bus = self.driver.bus();
+            if core::mem::replace(&mut self.bus, bus) != bus {
+                station.bus(bus, now);
             }
             match station.poll(now) {
                 Step::Send { ticket, frame } => {

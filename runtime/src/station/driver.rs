@@ -3,6 +3,7 @@
 use embedded_can::{blocking, nb as non_blocking};
 
 use crate::Frame;
+use crate::client::Bus;
 use crate::frame::classic;
 
 /// A driver of a bus that does not block.
@@ -25,6 +26,12 @@ pub trait Driver {
     ///
     /// Fails if the driver is of no use any more.
     fn receive(&mut self) -> Result<Option<Frame>, Self::Error>;
+
+    /// Returns whether the bus carries frames, as far as the driver knows. While it does not, nothing is sent, and no
+    /// request is lost.
+    fn bus(&self) -> Bus {
+        Bus::On
+    }
 }
 
 /// A driver that implements [`embedded_can::nb::Can`], as those of microcontrollers do.

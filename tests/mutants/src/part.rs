@@ -23,7 +23,7 @@ pub const PARTS: [Part; 3] = [
         name: "runtime",
         sources: &["runtime/src"],
         without: &["tests.rs", "tests", "with_arbitrary.rs", "with_defmt.rs", "with_serde.rs", "with_serde"],
-        tests: &["--package", "canspec-runtime", "--lib", "--features", "slcan"],
+        tests: &["--package", "canspec-runtime", "--lib", "--features", "slcan,socketcan"],
         optimization: "1",
     },
     Part {

@@ -13,7 +13,7 @@ use embedded_can::{ErrorKind, Id, blocking};
 use super::bus::{Charger, reply, settings};
 use super::chargers::{AtOnce, Message};
 use crate::Frame;
-use crate::client::Output;
+use crate::client::{Bus, Output};
 use crate::station::{Blocking, Drive, Driver, Event, Found, Known, NonBlocking, Station, listen, pump};
 
 type Lone = Station<Message<AtOnce>, 1, 1, 6>;
@@ -135,6 +135,41 @@ fn what_a_full_driver_does_not_take_is_sent_later() {
     assert_eq!(turned(&wire, &mut station, &mut drive, 300), []);
     wire.is_full.set(false);
     assert_eq!(turned(&wire, &mut station, &mut drive, 2900), FOUND);
+}
+
+/// A driver that knows whether the bus carries frames, and counts the frames that it is asked to send.
+struct Knowing<'a> {
+    wire: &'a Wire,
+    bus: Bus,
+    asked: u32,
+}
+
+impl Driver for Knowing<'_> {
+    type Error = Broken;
+
+    fn send(&mut self, frame: &Frame) -> Result<bool, Broken> {
+        self.asked += 1;
+        Ok(self.wire.carries(frame))
+    }
+
+    fn receive(&mut self) -> Result<Option<Frame>, Broken> {
+        Ok(self.wire.next())
+    }
+
+    fn bus(&self) -> Bus {
+        self.bus
+    }
+}
+
+#[test]
+fn a_driver_that_knows_that_the_bus_is_off_is_asked_to_send_nothing_until_it_is_on_again() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut drive = Drive::new(Knowing { wire: &wire, bus: Bus::Off, asked: 0 });
+    assert_eq!(turned(&wire, &mut station, &mut drive, 2000), []);
+    assert_eq!(drive.driver().asked, 0);
+    drive.driver().bus = Bus::On;
+    assert_eq!(turned(&wire, &mut station, &mut drive, 4000), FOUND);
+    assert_eq!(wire.sent.borrow()[0], 2000);
 }
 
 #[test]
