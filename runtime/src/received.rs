@@ -1,5 +1,7 @@
 //! Recognised frames.
 
+mod display;
+
 use core::mem::discriminant;
 
 use crate::incoming::Incoming;

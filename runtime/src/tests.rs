@@ -96,6 +96,16 @@ fn each_heater_of_a_group_may_answer_and_nobody_answers_all() {
 }
 
 #[test]
+fn a_recognised_frame_is_a_line_with_its_direction_its_module_and_its_data() {
+    let line = |id, data| decode(&frame(id, data)).expect("a known frame").to_string();
+    assert_eq!(line(0x0107_03F1, [1, 0, 0, 0x96]), "set heat to 3: 01000096");
+    assert_eq!(line(0x0107_F003, [2, 0xF0, 0, 0x64]), "set heat of 3: 02F00064");
+    // One for a whole group, and the reply of the module that answers for it.
+    assert_eq!(line(0x0107_3FF0, [1, 0, 0, 0x96]), "set heat to 01073FF0: 01000096");
+    assert_eq!(line(0x0108_F05D, [0; 4]), "read heat of 0108F05D: 00000000");
+}
+
+#[test]
 fn an_error_reply_is_a_reply_without_values() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     for error in [frame(0x0907_F003, [2, 0xF0, 0, 0]), frame(0x0107_F003, [2, 0xF2, 0, 0])] {

@@ -28,6 +28,15 @@ fn output(voltage_v: f64, current_a: f64) -> infy::Message {
 }
 
 #[test]
+fn a_frame_of_the_document_is_a_line_with_its_message_and_its_module() {
+    // By section 2.4 of the document: module 0 says its output, and group 1 is asked for its total.
+    let reply = request(0x0283_F000, 0x43FA_0000_4060_0000);
+    assert_eq!(reply.to_string(), "read module_output of 0: 43FA000040600000");
+    assert_eq!(request(0x0283_00F0, 0).to_string(), "read module_output to 0: 0000000000000000");
+    assert_eq!(request(0x02C1_01F0, 0).to_string(), "read_total system_output to 02C101F0: 0000000000000000");
+}
+
+#[test]
 fn a_module_answers_with_the_frame_that_the_document_prints() {
     let set = request(0x029C_00F0, 0x0003_0D40_0000_1388);
     assert_eq!(set.answer(0, output(199.985, 5.0)), Ok(frame(0x029C_F000, 0x0003_0D31_0000_1388)));
