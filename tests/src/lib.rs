@@ -58,7 +58,7 @@ struct Transports;
 struct QuantitiesOfVendors;
 
 /// The Rust of the page on a charging controller compiles and runs.
-#[cfg(doctest)]
+#[cfg(all(doctest, target_os = "linux"))]
 #[doc = include_str!("../../docs/how-to/charger.md")]
 struct Chargers;
 
