@@ -60,6 +60,7 @@ mod hold;
 mod nodes;
 mod order;
 mod pace;
+mod quiet;
 mod step;
 #[cfg(test)]
 mod tests;
@@ -77,12 +78,13 @@ pub use step::Step;
 
 use core::num::NonZeroU32;
 
-use crate::clock::{Steady, earlier, has_come};
+use crate::clock::{Steady, earlier, has_come, time_left};
 use crate::{Problem, Protocol, Received, Replies, Request};
 use bus::Sending;
-use entry::{Entry, State, Urgency};
+use entry::{Answered, Asked, Entry, State, Urgency};
 use group::Groups;
 use health::Health;
+use quiet::Quiet;
 
 /// The longest time in milliseconds after which a later time is still told from an earlier one.
 const LONGEST: u32 = (1 << 31) - 1;
@@ -92,7 +94,7 @@ const LONGEST: u32 = (1 << 31) - 1;
 /// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
 /// and again.
 ///
-/// A client takes 152 bytes. Each request takes 124 on a processor of 32 bits, and 136 on one of 64 bits.
+/// A client takes 168 bytes. Each request takes 124 on a processor of 32 bits, and 136 on one of 64 bits.
 /// Each group takes 120.
 #[derive(Clone, Copy, Debug)]
 pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
@@ -109,6 +111,8 @@ pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     busy: Option<u32>,
     /// What was sent last, until the next poll.
     last: Option<Sending>,
+    /// How long there is nothing to do, if that is known and nothing happens.
+    quiet: Option<Quiet>,
     /// Number of the next ticket.
     next: u32,
 }
@@ -118,8 +122,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     pub const fn new(pace: Pace) -> Self {
         let (entries, groups) = ([None; N], Groups([None; G]));
         let (health, clock, bus) = (Health::NEW, Steady::NEW, Bus::On);
-        let (free, busy, last) = (None, None, None);
-        Self { pace, model: None, entries, groups, health, clock, bus, free, busy, last, next: 0 }
+        let (free, busy, last, quiet) = (None, None, None, None);
+        Self { pace, model: None, entries, groups, health, clock, bus, free, busy, last, quiet, next: 0 }
     }
 
     /// Reads frames as those of a device model if messages look the same.
@@ -150,7 +154,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn ask_at<R>(&mut self, pace: Pace, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         self.add_instead(Entry::new(self.ticket(), request.untyped(), pace, now))
     }
 
@@ -187,6 +191,12 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         self.repeat(period, true, request, now)
     }
 
+    /// Lets time pass until the program tells something, after which there may be something to do.
+    fn told(&mut self, now: u32) -> u32 {
+        self.quiet = None;
+        self.clock.pass(now)
+    }
+
     fn repeat<R>(
         &mut self,
         period: u32,
@@ -194,7 +204,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         request: Request<P, R>,
         now: u32,
     ) -> Result<Ticket, NotRepeated> {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         let period = Some(round(period).ok_or(NotRepeated::Period)?);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         self.add_instead(Entry { period, is_spare, ..entry }).map_err(|Full| NotRepeated::Full)
@@ -233,7 +243,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// group. A hurried switch-on would end a stop that waits, so hurry only stops. [Cancel](Self::cancel)
     /// what is asked [again and again](Self::every) and would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         let mut entries = self.entries.iter_mut().flatten();
         if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {
             entry.urgency = Urgency::Hurried;
@@ -244,6 +254,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Asks no more, and ends what [follows](Self::hold_after) it. An answer that still comes is late.
     pub fn cancel(&mut self, ticket: Ticket) {
+        self.quiet = None;
         let entries = self.entries.iter_mut();
         for slot in entries.filter(|slot| slot.as_ref().is_some_and(|entry| entry.ticket == ticket)) {
             *slot = slot.and_then(Entry::cancelled);
@@ -258,8 +269,15 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if let Some(back) = self.clock.went_back() {
             return Step::ClockBack(back);
         }
-        let deadline = |client: &Self| client.deadline(now).map(|time| client.clock.of_program(time));
-        self.act(now).unwrap_or_else(|| Step::Wait(deadline(self)))
+        if self.quiet.is_none_or(|quiet| quiet.is_over(now)) {
+            self.quiet = None;
+            if let Some(step) = self.act(now) {
+                return step;
+            }
+            self.quiet = Some(self.quiet_from(now));
+        }
+        let deadline = self.quiet.and_then(|quiet| quiet.deadline);
+        Step::Wait(deadline.map(|time| self.clock.of_program(time)))
     }
 
     /// Says what to do now, if there is anything.
@@ -293,7 +311,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
                 health.lost(&entry.silent(group));
             }
         }
-        if is_led {
+        // When the bus is on again, all that follows another request waits anew.
+        if is_led && self.bus == Bus::On {
             self.doubt_leaders(now);
             self.renew_leaders(now);
         }
@@ -308,74 +327,83 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// [rival](Heard::Rival).
     pub fn handle(&mut self, frame: &impl embedded_can::Frame, received_at: u32) -> Heard<P> {
         let received_at = self.clock.steady(received_at);
-        let asking = self.asking(frame, received_at);
         let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
-            Err(problem) => return self.unrecognised(frame, problem, asking, received_at),
+            Err(Problem::Length) => return self.answered_short(frame, received_at),
+            Err(problem) => return Heard::Unrecognised(problem),
         };
         let node = sender(&received);
-        if let Some(node) = node {
-            self.heard(node, received_at);
-        }
-        let Some(entry) = asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) else {
-            return if received.is_to_module() { Heard::Rival(received) } else { Heard::Other(received) };
+        let (heard, answered) = match self.asking(frame, received_at) {
+            Some(place) => self.answered(place, frame, received, received_at),
+            None if received.is_to_module() => (Heard::Rival(received), None),
+            None => (Heard::Other(received), None),
         };
-        if let Some(heard) = entry.too_late(received, received_at) {
-            return heard;
+        if let Some(node) = node {
+            if self.health.heard(node) {
+                self.quiet = None;
+            }
+            self.groups.heard(node, received_at);
         }
-        let is_refusal = entry.request.refuses(frame) == Some(true);
-        let begun = entry.begun;
-        let group = self.groups.asked_by(entry);
-        let heard = entry.answered(received, is_refusal, self.model, received_at, group);
-        let is_over = entry.is_resting();
-        if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
-            self.put_off(node, begun);
+        if let Some(asked) = node.map(Asked::One) {
+            let entries = self.entries.iter_mut().flatten().filter(|entry| entry.asked == asked);
+            entries.for_each(|entry| entry.has_heard(received_at, answered));
         }
-        if let (Heard::Answer { ticket, .. }, true) = (&heard, is_over) {
-            self.lead(*ticket);
+        if let Some(Answered { begun, ended: Some(first) }) = answered {
+            self.entries.iter_mut().flatten().for_each(|entry| entry.led_by(first, Some(begun)));
         }
         heard
     }
 
-    /// Notes that a module has spoken.
-    fn heard(&mut self, node: u8, received_at: u32) {
-        self.health.heard(node);
-        self.groups.heard(node, received_at);
-        let entries = self.entries.iter_mut().flatten().filter(|entry| entry.node() == Some(node));
-        entries.for_each(|entry| entry.is_heard |= has_come(entry.begun, received_at));
+    /// Takes a frame for the answer to the request at a place. Also says what that changes for other requests.
+    fn answered(
+        &mut self,
+        place: usize,
+        frame: &impl embedded_can::Frame,
+        received: Received<P>,
+        received_at: u32,
+    ) -> (Heard<P>, Option<Answered>) {
+        self.quiet = None;
+        let Some(Some(entry)) = self.entries.get_mut(place) else { return (Heard::Other(received), None) };
+        if let Some(heard) = entry.too_late(received, received_at) {
+            return (heard, None);
+        }
+        let is_refusal = entry.request.refuses(frame) == Some(true);
+        let group = self.groups.asked_by(entry);
+        let heard = entry.answered(received, is_refusal, self.model, received_at, group);
+        let is_over = matches!(heard, Heard::Answer { .. }) && entry.is_resting();
+        let answered = Answered { begun: entry.begun, ended: is_over.then_some(entry.ticket) };
+        let is_heard = matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. });
+        (heard, is_heard.then_some(answered))
+    }
+
+    /// Takes a frame that is too short or too long for the answer to a request, if there is one.
+    fn answered_short(&mut self, frame: &impl embedded_can::Frame, received_at: u32) -> Heard<P> {
+        let asking = self.asking(frame, received_at);
+        match asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
+            Some(entry) if entry.awaits() => {
+                self.quiet = None;
+                let is_group_known = self.groups.is_asked_by(entry);
+                entry.answered_short(frame, received_at, is_group_known)
+            }
+            _ => Heard::Unrecognised(Problem::Length),
+        }
     }
 
     /// Returns the place of the request that a frame answers.
     fn asking(&self, frame: &impl embedded_can::Frame, received_at: u32) -> Option<usize> {
-        let claims = self.entries.iter().enumerate().filter_map(|(place, slot)| {
-            let entry = slot.as_ref()?;
-            let claim = entry.claim(received_at)?;
-            self.groups.is_answer(entry, frame).then_some((place, claim))
-        });
-        claims.min_by_key(|(_, claim)| *claim).map(|(place, _)| place)
-    }
-
-    /// Says what a frame is that is not recognised.
-    fn unrecognised(
-        &mut self,
-        frame: &impl embedded_can::Frame,
-        problem: Problem,
-        asking: Option<usize>,
-        received_at: u32,
-    ) -> Heard<P> {
-        match asking.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
-            Some(entry) if problem == Problem::Length && entry.awaits() => {
-                let is_group_known = self.groups.is_asked_by(entry);
-                entry.answered_short(frame, received_at, is_group_known)
+        let mut first: Option<(u8, usize)> = None;
+        for (place, slot) in self.entries.iter().enumerate() {
+            let Some(entry) = slot else { continue };
+            // Of most requests no answer can come.
+            if !entry.is_under_way() {
+                continue;
             }
-            _ => Heard::Unrecognised(problem),
+            let claim = entry.claim(received_at).filter(|claim| first.is_none_or(|(first, _)| *claim < first));
+            if let Some(claim) = claim.filter(|_| self.groups.is_answer(entry, frame)) {
+                first = Some((claim, place));
+            }
         }
-    }
-
-    /// Notes that a module has heard what was sent at a time.
-    fn put_off(&mut self, node: Option<u8>, sent: u32) {
-        let entries = self.entries.iter_mut().flatten();
-        entries.filter(|entry| node.is_some() && entry.node() == node).for_each(|entry| entry.put_off(sent));
+        first.map(|(_, place)| place)
     }
 
     const fn ticket(&self) -> Ticket {
@@ -435,21 +463,42 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         })
     }
 
-    /// Returns the next time at which something is to do.
+    /// Returns how long there is nothing to do, as there is nothing now.
+    fn quiet_from(&self, now: u32) -> Quiet {
+        let deadline = self.deadline(now);
+        let times = [deadline, self.free, self.idle_from()].into_iter().flatten();
+        let left = times.map(|time| time_left(time, now)).min();
+        let until = left.map(|left| now.wrapping_add(left));
+        Quiet { deadline, until }
+    }
+
+    /// Returns the next time at which something is to do. What is due and not sent waits for another entry.
     fn deadline(&self, now: u32) -> Option<u32> {
         let free = self.free.unwrap_or(now);
-        let next = |entry: &Entry<P>| match entry.state {
-            State::Due { .. } if entry.is_held_back() || self.bus == Bus::Off => None,
-            State::Due { from } if earlier(from, free, now) => Some(free),
-            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
+        let idle = self.idle_from().filter(|_| self.bus == Bus::On);
+        let mut next: Option<u32> = None;
+        let mut note = |time: u32| {
+            let left = time_left(time, now);
+            if left > 0 && next.is_none_or(|next| left < next) {
+                next = Some(left);
+            }
         };
-        let doubt = |entry: &Entry<P>| self.idle_from().filter(|_| entry.leader.is_some() && entry.due(now).is_some());
-        let opens = |entry: &Entry<P>| [entry.tail_until(), entry.closes(), entry.unheard_from(), entry.overdue_from()];
-        let times = |entry| opens(entry).into_iter().chain([next(entry), doubt(entry)]);
-        let times = self.entries.iter().flatten().flat_map(times).flatten();
-        // What is due and not sent waits for another entry.
-        let times = times.filter(|time| !has_come(*time, now));
-        times.reduce(|one, other| if earlier(other, one, now) { other } else { one })
+        for entry in self.entries.iter().flatten() {
+            match entry.state {
+                State::Due { .. } if entry.is_held_back() || self.bus == Bus::Off => {}
+                State::Due { from } if earlier(from, free, now) => note(free),
+                State::Due { from: time } | State::Waiting { until: time } | State::Resting { until: time, .. } => {
+                    note(time);
+                }
+            }
+            if entry.leader.is_some() && entry.due(now).is_some() {
+                idle.into_iter().for_each(&mut note);
+            }
+            if entry.is_under_way() || entry.is_spare {
+                entry.times().into_iter().flatten().for_each(&mut note);
+            }
+        }
+        next.map(|left| now.wrapping_add(left))
     }
 }
 

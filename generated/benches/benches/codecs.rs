@@ -10,7 +10,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 const SECOND: Duration = Duration::from_secs(1);
 
 fn codecs(criterion: &mut Criterion<ProcessorTime>) {
-    for workload in &Workload::ALL {
+    for workload in Workload::timed() {
         for kind in workload.kinds {
             let frames = (kind.frames)(Workload::TIMED);
             for (set, count) in Workload::SETS {

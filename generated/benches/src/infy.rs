@@ -23,6 +23,7 @@ pub const WORKLOAD: Workload = Workload {
     name: "infy",
     kinds: &[Kind { name: "every message", frames: frames::distinct }],
     codecs: &[measured::<Generated>(), measured::<Hand>(), measured::<Dbc>()],
+    counted: None,
 };
 
 const fn measured<C: Infy>() -> Measured {

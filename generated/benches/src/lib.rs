@@ -1,10 +1,11 @@
-//! Codecs of the same frames, to be measured beside each other.
+//! Codecs of the same frames, to be measured beside each other, and the client.
 
 /// Hands values over, and the compiler cannot know what happens to them.
 macro_rules! take {
     ($($value:expr),*) => {{ $(::std::hint::black_box($value);)* }};
 }
 
+pub mod client;
 pub mod frame;
 pub mod infy;
 pub mod processor_time;

@@ -37,6 +37,7 @@ pub const WORKLOAD: Workload = Workload {
         measured::<OneAddress>(),
         measured::<Binrw>(),
     ],
+    counted: None,
 };
 
 const fn measured<C: Codec>() -> Measured {

@@ -36,7 +36,7 @@ fn instructions(number: usize) {
             let ours = programs.iter().map(|program| vec![program.into(), kind.to_string().into()]);
             let cantools = cantools.get(kind).into_iter().flatten();
             let cantools = cantools.map(|command| command.iter().cloned().chain([name.into()]).collect());
-            ours.chain(cantools).map(|command: Vec<_>| counted(&command)).collect()
+            ours.chain(cantools).map(|command: Vec<_>| counted(&command, workload.counted)).collect()
         };
         rows(name, workload.kinds, &(0..workload.kinds.len()).map(cells).collect::<Vec<_>>());
     }
@@ -93,28 +93,41 @@ fn program(profile: &str, work: [usize; 3]) -> PathBuf {
 
 /// Returns the instructions of one work: what three passes take more than one. A codec that does not have it has none.
 #[expect(clippy::cast_precision_loss, reason = "it is no exact number anyway")]
-fn counted(command: &[OsString]) -> Option<f64> {
-    let [(one, count), (three, _)] = [1, 3].map(|passes| valgrind(command, passes));
+fn counted(command: &[OsString], functions: Option<&str>) -> Option<f64> {
+    let [(one, count), (three, _)] = [1, 3].map(|passes| valgrind(command, functions, passes));
     (count > 0).then(|| (three - one) / (2 * count) as f64)
 }
 
-/// Returns how many instructions a command takes for its passes, and how often a pass does the work.
-fn valgrind(command: &[OsString], passes: usize) -> (f64, usize) {
+/// Returns how many instructions a command takes for its passes, perhaps in some functions alone, and how often a pass
+/// does the work.
+fn valgrind(command: &[OsString], functions: Option<&str>, passes: usize) -> (f64, usize) {
+    let tool: &[_] = match functions {
+        None => &["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"].map(String::from),
+        Some(functions) => &[
+            "--tool=callgrind".into(),
+            "--callgrind-out-file=/dev/null".into(),
+            format!("--toggle-collect={functions}"),
+        ],
+    };
     let output = Command::new("valgrind")
-        .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
+        .args(tool)
         .args(command)
         .arg(passes.to_string())
         .output()
         .expect("valgrind is installed");
     let [text, count] = [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned());
-    let line = text.lines().find(|line| line.contains("refs:")).expect("valgrind counts");
+    // Cachegrind counts all `refs`, and callgrind says what it `Collected`.
+    let line = text
+        .lines()
+        .find(|line| line.contains("refs:") && functions.is_none() || line.contains("Collected"))
+        .expect("valgrind counts");
     let instructions = line.rsplit(' ').next().and_then(|number| number.replace(',', "").parse().ok());
     (instructions.expect("a number"), count.trim().parse().expect("the program says how often it works"))
 }
 
 /// Prints what criterion measured.
 fn times() {
-    let measured = Workload::ALL.each_ref().map(workload_times);
+    let measured: Vec<_> = Workload::timed().map(workload_times).collect();
     if !measured.contains(&true) {
         println!("Processor time: not measured; `cargo bench` measures it.");
     }

@@ -2,7 +2,7 @@
 
 use crate::frame::Frame;
 use crate::work::Work;
-use crate::{infy, supply};
+use crate::{client, infy, supply};
 
 /// Frames, and the codecs that work on them.
 #[derive(Clone, Copy)]
@@ -13,6 +13,8 @@ pub struct Workload {
     pub kinds: &'static [Kind],
     /// The codecs, with the same works in the same order.
     pub codecs: &'static [Measured],
+    /// The pattern of the functions that are counted, if a pass does more than the work. Then it is not timed.
+    pub counted: Option<&'static str>,
 }
 
 /// A kind of frames.
@@ -35,13 +37,18 @@ pub struct Measured {
 
 impl Workload {
     /// All workloads.
-    pub const ALL: [Self; 2] = [infy::WORKLOAD, supply::WORKLOAD];
+    pub const ALL: [Self; 3] = [infy::WORKLOAD, supply::WORKLOAD, client::WORKLOAD];
     /// How many frames of a kind valgrind sees.
     pub const COUNTED: usize = 20_000;
     /// How many frames of a kind are timed.
     pub const TIMED: usize = 1_000_000;
     /// The sets of frames that are timed, with their sizes: distinct frames, and a loop that stays in the cache.
     pub const SETS: [(&'static str, usize); 2] = [("distinct", Self::TIMED), ("loop", 16)];
+
+    /// Returns the workloads that are timed.
+    pub fn timed() -> impl Iterator<Item = &'static Self> {
+        Self::ALL.iter().filter(|workload| workload.counted.is_none())
+    }
 
     /// Returns the names of the works.
     pub fn works(&self) -> impl Iterator<Item = &'static str> {

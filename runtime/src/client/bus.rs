@@ -31,7 +31,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// the next `poll`; later it changes nothing. The request has lost no try, and is due again after the gap, of at
     /// least 1 ms. Then `poll` says anew what is to be sent first.
     pub fn not_sent(&mut self, ticket: Ticket, now: u32) {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         let Some(last) = self.last.filter(|last| last.ticket == ticket) else { return };
         self.last = None;
         self.busy = last.busy;
@@ -50,7 +50,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// When it is on again, what was hurried goes first, then what has waited longest. Rounds that were missed are left
     /// out. What [follows](Self::hold_after) another request waits until that is in effect anew.
     pub fn bus(&mut self, bus: Bus, now: u32) {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         if bus == self.bus {
             return;
         }

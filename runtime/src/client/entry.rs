@@ -58,6 +58,15 @@ pub struct Sent {
     pub closes: u32,
 }
 
+/// A request that was answered, refused, or is not in effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Answered {
+    /// When it was first sent.
+    pub begun: u32,
+    /// Its ticket, if an answer has ended its round.
+    pub ended: Option<Ticket>,
+}
+
 /// Whom an entry asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
@@ -154,7 +163,7 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Returns from when on it goes before others since it keeps a module alive, if it waits to be sent.
-    pub fn overdue_from(&self) -> Option<u32> {
+    fn overdue_from(&self) -> Option<u32> {
         let State::Due { from } = self.state else { return None };
         self.is_spare.then(|| from.wrapping_add(self.pace.gap))
     }
@@ -307,8 +316,9 @@ impl<P: Protocol> Entry<P> {
         let agrees = |hold: Hold<P>| !is_refusal && hold.agrees(&self.request, &received, model);
         let is_good = !is_starting && self.hold.is_none_or(agrees);
         let is_group_known = group.is_some();
-        if let (Some(group), Some(node)) = (group, self.request.sender(received.frame())) {
-            if !group.answered(node, is_good) {
+        if let Some(group) = group {
+            let sender = self.request.sender(received.frame());
+            if sender.is_some_and(|node| !group.answered(node, is_good)) {
                 return Heard::Twice { ticket, received };
             }
         }
@@ -355,8 +365,16 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
+    /// Notes that its module has sent something, which perhaps shows what that has heard.
+    pub fn has_heard(&mut self, received_at: u32, answered: Option<Answered>) {
+        self.is_heard |= has_come(self.begun, received_at);
+        if let Some(answered) = answered {
+            self.put_off(answered.begun);
+        }
+    }
+
     /// Puts a spare round off, since the module has heard what was sent at a time.
-    pub fn put_off(&mut self, sent: u32) {
+    fn put_off(&mut self, sent: u32) {
         let Some(period) = self.period.filter(|_| self.is_spare) else { return };
         let due = sent.wrapping_add(period.get());
         match self.state {
@@ -398,6 +416,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Begins the next round after a rest, and returns whether there is one. What is due forgets what was sent before
     /// when no answer to that can come any more.
+    #[inline]
     pub fn goes_on(&mut self, now: u32) -> bool {
         match self.state {
             State::Resting { until, .. } if has_come(until, now) => {
@@ -443,9 +462,14 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Returns from when on what waits to be sent is not answered any more, although it was sent before.
-    pub fn closes(&self) -> Option<u32> {
+    fn closes(&self) -> Option<u32> {
         let is_due = matches!(self.state, State::Due { .. });
         self.sent.filter(|_| is_due).map(|sent| sent.closes)
+    }
+
+    /// Returns the times at which answers to it can come no more, or it goes before others.
+    pub fn times(&self) -> [Option<u32>; 4] {
+        [self.tail_until(), self.closes(), self.unheard_from(), self.overdue_from()]
     }
 
     /// Returns when the wait for the last frame is over, or what comes after it.

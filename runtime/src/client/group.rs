@@ -60,6 +60,7 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// Refuses a target that the document does not name, and one more than there is room for.
     pub fn members(&mut self, target: impl Into<Route<P::Target>>, members: impl Into<Nodes>) -> Result<(), NoMembers> {
         let (route, members) = (target.into(), members.into());
+        self.quiet = None;
         let target = route.target().request(route.sender()).map_err(NoMembers::Target)?;
         let groups = &mut self.groups.0;
         let known = groups.iter().position(|group| group.is_some_and(|group| group.target == target));
@@ -124,10 +125,12 @@ impl<const G: usize> Groups<G> {
         }
     }
 
-    /// Tests whether a frame answers a request, perhaps by a refusal, and a module that should answer sent it.
+    /// Tests whether a frame answers a request, perhaps by a refusal, and a module that should answer sent it. The
+    /// identifier of an answer to one module shows that already.
     pub fn is_answer<P: Protocol>(&self, entry: &Entry<P>, frame: &impl embedded_can::Frame) -> bool {
         let is_expected = || Some(self.answerers(entry)?.contains(entry.request.sender(frame)?));
-        entry.request.refuses(frame).is_some() && is_expected().unwrap_or(true)
+        let is_of_group = || !entry.request.has_many_answers() || is_expected().unwrap_or(true);
+        entry.request.refuses(frame).is_some() && is_of_group()
     }
 
     /// Tests whether a frame can answer both requests.

@@ -22,9 +22,9 @@ impl Health {
         self.silent = self.silent.both(&self.told);
     }
 
-    /// Notes that a module has spoken.
-    pub fn heard(&mut self, node: u8) {
-        self.silent.remove(node);
+    /// Notes that a module has spoken. Returns whether it was silent.
+    pub fn heard(&mut self, node: u8) -> bool {
+        self.silent.remove(node)
     }
 
     /// Says of one module that it is silent, or back.

@@ -114,7 +114,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         let period = Some(round(refresh).ok_or(NotHeld::Period)?);
         let hold = Some(Hold { agrees, tail: None });

@@ -58,7 +58,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
-        let now = self.clock.pass(now);
+        let now = self.told(now);
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         let mut entries = self.entries.iter().flatten();
         let leader = entries.find(|held| held.ticket == first && held.is_held()).ok_or(NotHeld::First)?;
@@ -73,9 +73,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Lets those requests be sent that follow one which is in effect.
     pub(super) fn lead(&mut self, first: Ticket) {
         let begun = self.entries.iter().flatten().find(|entry| entry.ticket == first).map(|entry| entry.begun);
-        for follower in self.entries.iter_mut().flatten().filter(|entry| entry.follows(first)) {
-            follower.be_led(begun);
-        }
+        self.entries.iter_mut().flatten().for_each(|entry| entry.led_by(first, begun));
     }
 
     /// Lets all that follows a request wait until it is in effect anew.
@@ -168,7 +166,13 @@ impl<P: Protocol> Entry<P> {
         self.leader.is_some_and(|leader| leader.is_awaited)
     }
 
-    /// Is to be sent, as what it follows is in effect. That was sent at a time.
+    /// Is to be sent if it follows a request that is in effect. That was sent at a time.
+    pub fn led_by(&mut self, first: Ticket, sent: Option<u32>) {
+        if self.follows(first) {
+            self.be_led(sent);
+        }
+    }
+
     fn be_led(&mut self, sent: Option<u32>) {
         self.leader = self.leader.map(|leader| Leader { is_awaited: false, ..leader });
         if let (State::Due { .. }, Some(from)) = (self.state, latest_of(sent, self.deaf())) {

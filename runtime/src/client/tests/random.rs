@@ -13,6 +13,7 @@ use std::{env, format, println, vec};
 
 use embedded_can::Frame as _;
 
+use super::Polled as _;
 use super::stale::GET;
 use crate::client::{Bus, Client, Heard, Nodes, Pace, Step, Ticket, repeats};
 use crate::sim::Random;
@@ -238,7 +239,7 @@ impl Run {
         let mut sent = vec![];
         let shown = self.shown(now);
         loop {
-            match self.clients[place].poll(shown) {
+            match self.clients[place].polled(shown) {
                 Step::Send { ticket, .. } if self.refuses => {
                     self.clients[place].not_sent(ticket, shown);
                     self.counts.refused += 1;

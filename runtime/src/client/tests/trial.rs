@@ -7,6 +7,7 @@ use std::string::String;
 use std::vec::Vec;
 use std::{format, vec};
 
+use super::Polled as _;
 use crate::client::{Client, Heard, Nodes, Pace, Step, Ticket, repeats};
 use crate::sim::tests::Heater;
 use crate::sim::{Bench, Complaint, Event, Faults, Random, Rules};
@@ -124,7 +125,7 @@ impl Trial {
             }
         }
         loop {
-            match self.client.poll(now) {
+            match self.client.polled(now) {
                 Step::Send { frame, .. } => self.send(&frame, now),
                 Step::Lost(ticket) => {
                     self.end(ticket, 2, None, now);
