@@ -108,7 +108,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         }
         self.news.is_kept_on |= has_given && task == Task::Watch;
         if has_given {
-            self.modules.iter_mut().for_each(|module| module.due = None);
+            // Nobody knows from which current it rises when the program takes it back.
+            self.modules.iter_mut().for_each(|module| (module.due, module.reached_ma) = (None, 0));
         }
     }
 

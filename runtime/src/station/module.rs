@@ -54,7 +54,7 @@ pub struct Module<P: Protocol> {
     pub goal: Goal,
     /// Whether all of that is in effect.
     pub is_met: bool,
-    /// The current that has been in effect while it delivered, in mA.
+    /// The current that has been in effect since it was told to deliver, in mA.
     pub reached_ma: i32,
     /// Whether it delivered when it was found.
     pub was_on: Option<bool>,

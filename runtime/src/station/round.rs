@@ -150,6 +150,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let has_stop = groups.iter().any(|group| module.group == Some(group.number) && group.stop.is_some());
         if is_new && !is_output {
             module.duty.end(client);
+            // What delivers again begins with the first step.
+            module.reached_ma = 0;
         }
         if is_new {
             (module.goal, module.is_met) = (Goal::Read, false);

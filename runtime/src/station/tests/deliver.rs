@@ -135,6 +135,18 @@ fn a_module_that_has_restarted_begins_with_the_first_step() {
 }
 
 #[test]
+fn a_module_that_was_stopped_for_a_moment_begins_with_the_first_step() {
+    let mut bus = known(settings(Found::Watch));
+    deliver(&mut bus, volts(500, 30), 4900);
+    bus.station.stop(1, bus.clock()).expect("there is such a group");
+    bus.run(4990);
+    assert!(!bus.charger(1).is_on);
+    bus.forget();
+    deliver(&mut bus, volts(500, 30), 5100);
+    assert_eq!(bus.told("1")[0], "4990: 1 500 V 10 A");
+}
+
+#[test]
 fn a_module_that_starts_is_known_to_be_there_and_nothing_else() {
     let mut bus = known(settings(Found::Watch));
     deliver(&mut bus, volts(500, 30), 4900);

@@ -65,6 +65,19 @@ fn what_delivers_is_left_to_another_controller() {
 }
 
 #[test]
+fn what_is_taken_back_from_another_controller_begins_with_the_first_step() {
+    for rivals in [Rivals::Leave, Rivals::Watch] {
+        let mut bus = delivering(rivals);
+        deliver(&mut bus, volts(500, 30), 5900);
+        bus.hear(foreign(1, 1, [0x0F, 0xA0, 0, 50]));
+        bus.run(5990);
+        bus.forget();
+        deliver(&mut bus, volts(500, 30), 6100);
+        assert!(bus.told("1")[0].ends_with("1 500 V 10 A"), "{rivals:?}");
+    }
+}
+
+#[test]
 fn what_delivers_can_be_read_on_and_that_keeps_it_on() {
     let mut bus = delivering(Rivals::Watch);
     bus.hear(foreign(1, 1, [0x0F, 0xA0, 0, 50]));
