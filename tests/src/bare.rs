@@ -163,7 +163,7 @@ fn module(codec: &Codec, calls: impl FnOnce(&Module) -> TokenStream) -> (String,
 
             pub mod program {
                 use super::*;
-                use crate::calls;
+                use crate::{calls, stations};
                 use crate::unknown::unknown;
 
                 #unknown_values

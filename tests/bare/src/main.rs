@@ -6,6 +6,7 @@
 #![allow(dead_code, unused_imports, reason = "a program calls a part of the codecs")]
 
 mod calls;
+mod stations;
 mod unknown;
 
 include!(env!("CANSPEC_PROGRAM"));

@@ -43,11 +43,16 @@ impl Module {
             let owner = &block.self_ty;
             quote!(calls::client::<#owner>();)
         });
+        let stations = self.blocks().filter(|block| is_of(block, "Quantities")).map(|block| {
+            let owner = &block.self_ty;
+            quote!(stations::station::<#owner>();)
+        });
         let transports = quote!(calls::transport(); calls::isotp(););
-        std::iter::once(self.codec()).chain(clients).chain([transports]).collect()
+        std::iter::once(self.codec()).chain(clients).chain(stations).chain([transports]).collect()
     }
 
-    /// Returns calls of every function, and of what the runtime provides for its types, but no client and no simulator.
+    /// Returns calls of every function, and of what the runtime provides for its types, but no client, no station and no
+    /// simulator.
     pub fn codec(&self) -> TokenStream {
         // What has parameters of its own is called by the runtime.
         let is_called = |function: &Function<'_>| {
