@@ -270,7 +270,6 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             return Step::ClockBack(back);
         }
         if self.quiet.is_none_or(|quiet| quiet.is_over(now)) {
-            self.quiet = None;
             if let Some(step) = self.act(now) {
                 return step;
             }
@@ -478,10 +477,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let idle = self.idle_from().filter(|_| self.bus == Bus::On);
         let mut next: Option<u32> = None;
         let mut note = |time: u32| {
-            let left = time_left(time, now);
-            if left > 0 && next.is_none_or(|next| left < next) {
-                next = Some(left);
-            }
+            let left = Some(time_left(time, now)).filter(|left| *left > 0);
+            next = left.into_iter().chain(next).min();
         };
         for entry in self.entries.iter().flatten() {
             match entry.state {

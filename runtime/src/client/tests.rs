@@ -317,6 +317,18 @@ fn a_full_table_refuses_a_request_until_one_has_ended() {
 }
 
 #[test]
+fn a_client_with_nothing_to_do_looks_at_no_request_until_it_has() {
+    let mut client = Client::<Message, 4>::new(PACE);
+    client.ask(heat(3), 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*heat(3).frame()));
+    let Step::Wait(Some(until)) = client.step(0) else { panic!("it waits for the answer") };
+    // Nobody but a test can take a request away without a word.
+    client.entries = [None; 4];
+    assert_eq!([1, PACE.gap - 1].map(|now| client.poll(now)), [Step::Wait(Some(until)); 2]);
+    assert_eq!(client.poll(until), Step::Wait(None));
+}
+
+#[test]
 fn a_client_takes_no_more_memory_than_its_documentation_says() {
     let [none, request, group] =
         [size_of::<Client<Message, 0>>(), size_of::<Client<Message, 1>>(), size_of::<Client<Message, 0, 1>>()];
