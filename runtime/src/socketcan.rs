@@ -61,9 +61,10 @@ impl Port {
         self.link.wait(milliseconds);
     }
 
-    /// Opens the interface again if it has gone, from time to time.
-    fn reopen(&mut self) {
+    /// Returns the socket. One that has gone is opened again, from time to time.
+    fn socket(&mut self) -> Option<&mut CanSocket> {
         self.link.reopen(|| opened(&self.name));
+        self.link.open()
     }
 
     /// Takes what has happened to the interface: it has gone, or has no room or nothing to say.
@@ -78,9 +79,7 @@ impl Driver for Port {
     type Error = core::convert::Infallible;
 
     fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error> {
-        self.reopen();
-        let Some(frame) = frame.to::<CanDataFrame>() else { return Ok(false) };
-        let Some(socket) = self.link.open() else { return Ok(false) };
+        let (Some(frame), Some(socket)) = (frame.to::<CanDataFrame>(), self.socket()) else { return Ok(false) };
         match socket.write_frame(&frame) {
             Ok(()) => Ok(true),
             Err(error) => {
@@ -91,8 +90,7 @@ impl Driver for Port {
     }
 
     fn receive(&mut self) -> Result<Option<Frame>, Self::Error> {
-        self.reopen();
-        while let Some(socket) = self.link.open() {
+        while let Some(socket) = self.socket() {
             match socket.read_frame().map(|frame| News::of(&frame)) {
                 Ok(News::Data(frame)) => return Ok(Some(frame)),
                 Ok(News::BusOff) => self.link.lose(),
