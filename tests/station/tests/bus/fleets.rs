@@ -5,7 +5,7 @@ use canspec_runtime::{Frame, Received};
 
 use super::{Bus, Charger, Reports};
 
-fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>) -> Option<infy::Message> {
+pub fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>) -> Option<infy::Message> {
     use infy::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
     Some(match request.content() {
         Message::ReadModuleOutput => {
@@ -22,7 +22,7 @@ fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>
     })
 }
 
-fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -> Option<mxr::Message> {
+pub fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -> Option<mxr::Message> {
     use mxr::{Alarms, GroupAndAddress, Message, ModuleStatus, OutputCurrent, OutputVoltage};
     let value = if module.is_on { Alarms::default() } else { Alarms::DCDC_OFF };
     Some(match request.content() {
@@ -36,7 +36,10 @@ fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -
     })
 }
 
-fn megmeet_tells(request: &Received<megmeet::Message>, module: &Charger<megmeet::Message>) -> Option<megmeet::Message> {
+pub fn megmeet_tells(
+    request: &Received<megmeet::Message>,
+    module: &Charger<megmeet::Message>,
+) -> Option<megmeet::Message> {
     use megmeet::{Alarms, ExtendedAlarms, Message, ModuleStatus, OutputCurrent, OutputVoltage};
     let alarms = if module.is_on { Alarms::default() } else { Alarms::SHUT_DOWN };
     Some(match request.content() {

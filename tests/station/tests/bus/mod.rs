@@ -47,8 +47,11 @@ pub struct Charger<P: Addressed> {
     pub was_bare: bool,
     /// How often it was switched on while it was off.
     pub switched_on: u32,
-    /// The most by which its current was raised at once.
+    /// The most by which its output rose at once, in mA.
     pub steepest_ma: i32,
+    /// The current that it was told before it started anew. Its output may rise to that once, as nobody knows yet that
+    /// it has started.
+    pub before_ma: Option<i32>,
     /// When it started last.
     pub started: u32,
     /// What it does after silence, and whether it was on before that.
@@ -58,6 +61,8 @@ pub struct Charger<P: Addressed> {
     pub on_heard: Option<u32>,
     /// Whether it does not do what it is told.
     pub is_stuck: bool,
+    /// How often it has started by itself, after silence.
+    pub starts: u64,
     pub reports: Option<Reports<P>>,
 }
 
@@ -72,11 +77,13 @@ impl<P: Addressed> Charger<P> {
             was_bare: false,
             switched_on: 0,
             steepest_ma: 0,
+            before_ma: None,
             started: 0,
             after_silence: P::AFTER_SILENCE,
             was_on: None,
             on_heard: None,
             is_stuck: false,
+            starts: 0,
             reports: None,
         }
     }
@@ -93,6 +100,19 @@ impl<P: Addressed> Charger<P> {
     pub fn amperes(&self) -> f32 {
         if self.is_on { thousandths(self.current_ma) } else { 0.0 }
     }
+
+    /// Returns the current of its output, in mA. It delivers as much as it may.
+    pub fn delivered_ma(&self) -> i32 {
+        self.current_ma.filter(|_| self.is_on).unwrap_or_default()
+    }
+
+    /// Notes that its output has risen from a current.
+    fn note_rise(&mut self, from_ma: i32) {
+        if self.delivered_ma() > from_ma {
+            let from_ma = from_ma.max(self.before_ma.take().unwrap_or_default());
+            self.steepest_ma = self.steepest_ma.max(self.delivered_ma() - from_ma);
+        }
+    }
 }
 
 #[expect(clippy::cast_precision_loss, reason = "what is set has few digits")]
@@ -108,15 +128,16 @@ where
         let [voltage_mv, current_ma, is_on] =
             [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING]
                 .map(|quantity| request.setting(quantity));
-        if let Some(current_ma) = current_ma {
-            self.steepest_ma = self.steepest_ma.max(current_ma - self.current_ma.unwrap_or_default());
-        }
+        let from_ma = self.delivered_ma();
         (self.voltage_mv, self.current_ma) = (voltage_mv.or(self.voltage_mv), current_ma.or(self.current_ma));
         if let Some(is_on) = is_on.filter(|_| !self.is_stuck) {
             self.switched_on += u32::from(is_on == 1 && !self.is_on);
             self.is_on = is_on == 1;
-            self.was_bare |= self.is_on && (self.voltage_mv.is_none() || self.current_ma.is_none());
+            let has_current =
+                self.current_ma.is_some() || !P::SETS.iter().any(|path| path.quantity == Quantity::OUTPUT_CURRENT);
+            self.was_bare |= self.is_on && !(self.voltage_mv.is_some() && has_current);
         }
+        self.note_rise(from_ma);
         self.on_heard = self.on_heard.or(Some(now)).filter(|_| self.is_on);
         if voltage_mv.is_none() && current_ma.is_none() && is_on.is_none() {
             return (self.tell)(request, self).map_or(Answer::Silence, Answer::Values);
@@ -150,13 +171,17 @@ where
                 (self.was_on, self.is_on) = (Some(self.is_on), false);
             }
             AfterSilence::Off => self.is_on = false,
-            AfterSilence::Starts => self.is_on = true,
+            AfterSilence::Starts => {
+                self.starts += u64::from(!self.is_on);
+                self.is_on = true;
+            }
             AfterSilence::Keeps => {}
         }
     }
 
     fn power_on(&mut self, now: u32) {
         self.started = now;
+        self.before_ma = self.current_ma.or(self.before_ma);
         (self.voltage_mv, self.current_ma, self.is_on, self.was_on) = (None, None, false, None);
     }
 }
@@ -187,8 +212,14 @@ where
     P::Target: PartialEq,
 {
     pub fn new(groups: [(u8, P::Target); G], modules: [(u8, Charger<P>); N], seed: u64) -> Self {
+        let station = chargers(groups.map(|(number, target)| (number, Some(target)))).expect("it fits the document");
+        Self::of(station, modules, seed)
+    }
+
+    /// Returns a bus with a station.
+    pub fn of(station: Chargers<P, G>, modules: [(u8, Charger<P>); N], seed: u64) -> Self {
         Self {
-            station: chargers(groups.map(|(number, target)| (number, Some(target)))).expect("it fits the document"),
+            station,
             bench: Bench::new(modules, rules::<P>(), seed),
             now: 0,
             ahead: 0,
@@ -223,6 +254,13 @@ where
 
     /// Lets the station read and send what it has to, and fails if it breaks a rule.
     pub fn turn(&mut self) -> Result<(), String> {
+        self.receive()?;
+        self.act();
+        Ok(())
+    }
+
+    /// Lets the driver keep what comes, and fails if the station has broken a rule.
+    pub fn receive(&mut self) -> Result<(), String> {
         while let Some(event) = self.bench.poll(self.now) {
             match event {
                 Event::Frame { .. } if self.is_down => {}
@@ -233,8 +271,13 @@ where
                 Event::Complaint(complaint) => return Err(complaint.to_string()),
             }
         }
+        Ok(())
+    }
+
+    /// Lets the station read and send what it has to, unless the program stands still.
+    pub fn act(&mut self) {
         if self.is_stalled {
-            return Ok(());
+            return;
         }
         for (frame, at) in self.kept.drain(..) {
             self.heard += 1;
@@ -248,7 +291,7 @@ where
                     self.bench.send(&frame, self.now);
                 }
                 Step::Event(event) => self.events.push((self.now, event)),
-                Step::Wait(_) => return Ok(()),
+                Step::Wait(_) => return,
             }
         }
     }

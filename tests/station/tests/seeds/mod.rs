@@ -5,303 +5,353 @@
 //! - each live module that was found is fed before its watchdog runs out, while the bus is there and the station has not
 //!   given way,
 //! - each request of a client ends once, as answered, refused, lost or done,
-//! - after a stop no module delivers for longer than two rounds after it has heard anything. It is never on while it is
-//!   known to be off. In peace, each is known to be off, or is unknown if it is dead,
-//! - no value counts that is older than it may be, and no output is beyond a limit.
+//! - after a stop each module that is on is told to be off within a round, and again in each round. So none delivers for
+//!   longer than a round from the first frame that arrives, unless it misses or refuses the switch-offs of a round. That
+//!   holds for modules that another controller has switched on, and for those that have started by themselves, too. In
+//!   peace each is off and known to be off, or unknown if it is dead,
+//! - while all is stopped no module is on that is said to be off. Two modules with one address are known to contradict
+//!   each other within two rounds,
+//! - no value is shown as fresh that was said longer ago than values count,
+//! - no limit is passed: of the voltage, of the current, of a group, and of how far the current rises at once,
+//! - no module is switched on without its set-point, and each delivers whose answers are not too poor,
+//! - another controller that sets something is an event, and one that reads is none.
 //!
-//! Meanwhile the bus goes away, the program stands still while the driver keeps frames, the clock goes back, and other
-//! controllers read and set. No module is ever switched on without its set-point, and each delivers if its answers are not too poor.
+//! `watch.rs` has what must hold in each turn, and `counts.rs` what happens meanwhile.
 
-use std::collections::HashMap;
-use std::fmt;
-use std::ops::AddAssign;
+mod counts;
+mod fleet;
+mod requests;
+mod trouble;
+mod watch;
 
-use canspec_runtime::client::{Client, Heard, Output, Step, Ticket};
-use canspec_runtime::sim::{Event, Faults, Random, Tally};
-use canspec_runtime::{Addressed, Quantities, Quantity, Request};
+use canspec_runtime::client::Output;
+use canspec_runtime::sim::{Faults, Random};
+use canspec_runtime::station::Event;
+use canspec_runtime::{Addressed, Exchange, Quantities, Quantity, Request};
+use canspec_station::{ROUND, pace};
 
-use crate::bus::Bus;
-use canspec_station::{LIMITS, ROUND, output, pace};
+use crate::bus::rules;
+pub use counts::Counts;
+use fleet::Fleet;
+use trouble::{Change, OTHERS, TROUBLES, Trouble};
+use watch::{TURN, Watch};
 
-/// The voltage in mV, and the current in mA.
-const OUTPUT: (i32, i32) = (500_000, 2 * LIMITS.rise_ma);
-/// How long a cycle delivers, is stopped while modules fail, and is left in peace.
+/// How long a cycle delivers, and is left in peace. Between that it is stopped while modules fail.
 const DELIVER: u32 = 60_000;
-const STOP: u32 = 30_000;
 const PEACE: u32 = 20_000;
-pub const CYCLE: u32 = DELIVER + STOP + PEACE;
+/// How long a stop takes at least after the trouble.
+const QUIET: u32 = 8000;
+/// How long a cycle takes where no watchdog takes longer.
+pub const CYCLE: u32 = 110_000;
 /// After this time a module with fair answers delivers.
 const SETTLED: u32 = 25_000;
 /// How many of a hundred frames have a fault, at most, in fair and in poor cycles.
 const FAIR: u8 = 5;
 const POOR: u8 = 30;
 
-/// How often what happened.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Counts([u64; NAMES.len()]);
-
-const NAMES: [&str; 19] = [
-    "runs",
-    "frames sent",
-    "frames heard",
-    FAULTS[0],
-    FAULTS[1],
-    FAULTS[2],
-    FAULTS[3],
-    FAULTS[4],
-    FAULTS[5],
-    FAULTS[6],
-    TROUBLES[0],
-    TROUBLES[1],
-    TROUBLES[2],
-    TROUBLES[3],
-    "stops",
-    "modules found off",
-    "dead modules unknown",
-    "requests answered or refused",
-    "requests lost",
-];
-
-/// What happens at least once in each run.
-const FAULTS: [&str; 7] = [
-    "frames lost",
-    "frames repeated",
-    "frames of a wrong length",
-    "refusals",
-    "milliseconds of delay",
-    "restarts",
-    "deaths",
-];
-
-/// What happens to the bus, to the program and by others.
-const TROUBLES: [&str; 4] =
-    ["buses away", "programs that stand still", "clocks that go back", "other controllers that set"];
-
-/// How long a trouble lasts at most.
-const LONGEST_TROUBLE: u32 = 14_000;
-
-impl Counts {
-    fn add(&mut self, name: &str, count: u64) {
-        let place = NAMES.iter().position(|known| *known == name).expect("it is one of the names");
-        self.0[place] += count;
-    }
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.0.iter_mut().zip(other.0).for_each(|(own, other)| *own += other);
-    }
-}
-
-impl fmt::Display for Counts {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        NAMES.iter().zip(self.0).try_for_each(|(name, count)| writeln!(formatter, "{count:>12} {name}"))
-    }
-}
-
 /// A run.
-pub struct Run<P: Quantities + Addressed, const N: usize, const G: usize> {
-    pub bus: Bus<P, N, G>,
-    pub groups: [u8; G],
-    pub nodes: [u8; N],
-    /// The error code of a refusal.
-    pub code: u64,
-    pub random: Random,
-    pub counts: Counts,
-    /// When the trouble of this phase begins and ends, and which one it is.
-    pub trouble: (u32, u32, usize),
+struct Run<P: Quantities + Addressed, const N: usize, const G: usize> {
+    fleet: Fleet<P, N, G>,
+    /// The addresses of the modules. The last one has two modules in some cycles.
+    nodes: Vec<u8>,
+    random: Random,
+    counts: Counts,
+    watch: Watch<N>,
+    trouble: Trouble,
+    /// Whether the station has given way to another controller.
+    has_given_way: bool,
+    /// How often another controller has set something in this cycle.
+    rivals: usize,
 }
 
 impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usize> Run<P, N, G> {
+    fn new(mut fleet: Fleet<P, N, G>, seed: u64) -> Self {
+        let mut nodes: Vec<_> = fleet.bus.bench.devices().map(|(node, ..)| node).collect();
+        nodes.pop();
+        let (random, counts, watch) = (Random::new(!seed), Counts::default(), Watch::new());
+        Self { fleet, nodes, random, counts, watch, trouble: Trouble::NONE, has_given_way: false, rivals: 0 }
+    }
+
     /// Runs until a time, in milliseconds, and says what the station does wrong.
-    pub fn until(mut self, end: u32) -> Result<Counts, String> {
+    fn until(mut self, end: u32) -> Result<Counts, String> {
         self.counts.add("runs", 1);
-        let cycles = end.div_ceil(CYCLE);
-        for cycle in 0..cycles {
-            self.cycle(cycle).map_err(|wrong| format!("at {} ms: {wrong}", self.bus.now))?;
-            self.counts.add("frames sent", u64::try_from(self.bus.sent.len()).expect("few"));
-            self.bus.sent.clear();
+        self.twin_leaves();
+        for cycle in 0..end.div_ceil(CYCLE) {
+            self.cycle(cycle).map_err(|wrong| format!("at {} ms: {wrong}", self.fleet.bus.now))?;
+            self.counts.add("frames sent", u64::try_from(self.fleet.bus.sent.len()).expect("few"));
+            self.fleet.bus.sent.clear();
+            self.fleet.bus.events.clear();
+            self.watch.forget_sent();
         }
-        self.counts.add("frames heard", self.bus.heard);
+        self.counts.add("minutes", u64::from(self.fleet.bus.now / 60_000));
+        self.counts.add("frames heard", self.fleet.bus.heard);
+        self.counts.add("modules that miss or refuse the switch-offs of a round", self.watch.missed);
+        let starts = self.fleet.bus.bench.devices().map(|(_, device, _)| device.starts).sum();
+        self.counts.add("modules that start by themselves after silence", starts);
         self.requests()?;
-        let Tally { lost, twice, broken, refused, delay, restarts, deaths, .. } = self.bus.bench.tally();
-        let faults = [lost, twice, broken, refused, delay, restarts, deaths];
-        FAULTS.iter().zip(faults).for_each(|(name, count)| self.counts.add(name, count));
-        match FAULTS.iter().zip(faults).find(|(_, count)| *count == 0) {
-            Some((name, _)) => Err(format!("no {name} in the whole run")),
-            None => Ok(self.counts),
-        }
+        self.counts.add_tally(&self.fleet.bus.bench.tally());
+        Ok(self.counts)
     }
 
     fn cycle(&mut self, cycle: u32) -> Result<(), String> {
-        let start = self.bus.now;
+        let start = self.fleet.bus.now;
         let is_fair = self.draw_faults(cycle);
-        // What another controller has switched on does not count.
-        self.nodes.into_iter().for_each(|node| self.bus.device(node).was_bare = false);
+        self.begin();
         self.deliver()?;
         self.draw_trouble(false);
-        self.pass(start + DELIVER / 2, false)?;
+        self.pass(start + DELIVER / 2)?;
         // What has given way delivers again.
         self.deliver()?;
-        self.pass(start + DELIVER, false)?;
+        self.pass(start + DELIVER)?;
         if is_fair {
             self.check_output()?;
         }
-        for group in self.groups {
-            self.bus.station.stop(group, self.bus.clock()).map_err(|refused| format!("{refused:?}"))?;
-            self.counts.add("stops", 1);
-        }
-        for node in self.nodes {
-            self.bus.device(node).on_heard = None;
-        }
+        self.stop()?;
         self.draw_trouble(true);
-        self.pass(start + DELIVER + STOP, true)?;
+        let watchdog = rules::<P>().watchdog;
+        let quiet = self.fleet.bus.now + Trouble::longest(watchdog) + QUIET;
+        self.pass(quiet)?;
         self.check_off()?;
-        for node in self.nodes {
-            let faults = self.bus.faults(node);
+        self.twin_leaves();
+        self.nodes.clone().into_iter().for_each(|node| {
+            let faults = self.fleet.bus.faults(node);
             *faults = Faults { dies: faults.dies, ..Faults::NONE };
-        }
-        self.pass(start + CYCLE, true)?;
+        });
+        self.pass(quiet + PEACE)?;
         self.check_off()?;
-        self.check_states()
+        self.check_states()?;
+        self.check_rivals()
+    }
+
+    /// Forgets what other controllers have done to modules.
+    fn begin(&mut self) {
+        (self.watch.stopped, self.watch.woken, self.rivals) = (None, None, 0);
+        for (_, device, _) in self.fleet.bus.bench.devices() {
+            (device.was_bare, device.steepest_ma) = (false, 0);
+        }
     }
 
     fn deliver(&mut self) -> Result<(), String> {
-        let now = self.bus.clock();
-        self.groups.into_iter().try_for_each(|group| {
-            let point = output(OUTPUT.0, OUTPUT.1);
-            self.bus.station.deliver(group, point, now).map_err(|refused| format!("{refused:?}"))
-        })
+        let Fleet { bus, groups, point, .. } = &mut self.fleet;
+        let now = bus.clock();
+        self.has_given_way = false;
+        groups
+            .iter()
+            .try_for_each(|group| bus.station.deliver(*group, *point, now).map_err(|refused| format!("{refused:?}")))
     }
 
-    /// Draws the trouble of a phase.
+    fn stop(&mut self) -> Result<(), String> {
+        let Fleet { bus, groups, .. } = &mut self.fleet;
+        for group in *groups {
+            bus.station.stop(group, bus.clock()).map_err(|refused| format!("{refused:?}"))?;
+            self.counts.add("stops", 1);
+        }
+        self.watch.stopped = Some(bus.now);
+        Ok(())
+    }
+
     fn draw_trouble(&mut self, is_stopped: bool) {
-        let kind = usize::try_from(self.random.below(4)).expect("below 4");
-        // What another controller sets while a group delivers ends that, as one of the tests shows.
-        let kind = if !is_stopped && kind == 3 { 0 } else { kind };
-        let begins = self.bus.now + self.random.below(10_000);
-        self.trouble = (begins, begins + 1 + self.random.below(LONGEST_TROUBLE), kind);
+        let watchdog = rules::<P>().watchdog;
+        self.trouble = Trouble::draw(&mut self.random, watchdog, is_stopped, self.fleet.bus.now);
     }
 
     /// Lets the trouble begin and end.
     fn trouble(&mut self) {
-        let (begins, ends, kind) = self.trouble;
-        if self.bus.now < begins {
-            return;
-        }
-        let is_over = self.bus.now >= ends;
-        match kind {
-            0 => self.bus.is_down = !is_over,
-            1 => self.bus.is_stalled = !is_over,
-            2 => self.bus.ahead = self.bus.ahead.wrapping_sub(self.random.below(60_000)),
-            _ => self.another_controller(),
-        }
-        if kind < 2 {
-            // Modules that were not fed meanwhile are found again in the next rounds.
-            self.bus.excused = self.bus.now + 3 * ROUND;
-            // Nobody can tell them anything.
-            self.nodes.into_iter().for_each(|node| self.bus.device(node).on_heard = None);
-        }
-        if is_over || kind >= 2 {
-            self.trouble.0 = u32::MAX;
-            self.counts.add(TROUBLES[kind], 1);
-        }
-    }
-
-    /// Lets another controller switch a module on, once.
-    fn another_controller(&mut self) {
-        let node = self.nodes[usize::try_from(self.random.below(2)).expect("below 2")];
-        self.bus.device(node).was_bare = false;
-        let target = P::module(node.into()).expect("a module");
-        let switch = P::set(&[(Quantity::DELIVERING, 1)], target).expect("it is legal").next().expect("one message");
-        let _ = self.bus.bench.another_controller(*switch.frame(), u32::MAX / 4, self.bus.now);
-    }
-
-    /// Lets time pass, in turns of the program that take up to 15 ms.
-    fn pass(&mut self, until: u32, is_stopped: bool) -> Result<(), String> {
-        while self.bus.now < until {
-            self.trouble();
-            self.bus.turn()?;
-            for node in self.nodes {
-                let now = self.bus.now;
-                let device = *self.bus.device(node);
-                let was_told = |at: u32| is_stopped && now > at + 2 * ROUND && self.bus.bench.is_up(node);
-                if device.on_heard.is_some_and(was_told) {
-                    return Err(format!("module {node} has heard something since the stop, and is on"));
-                }
-                let is_others = self.trouble.2 == 3 && is_stopped;
-                if device.was_bare && !is_others {
-                    return Err(format!("module {node} is switched on without its set-point"));
-                }
-                if is_stopped && device.is_on && self.bus.state(node) == Some(Output::Off) {
-                    return Err(format!("module {node} is on, and said to be off"));
+        let bus = &mut self.fleet.bus;
+        let now = bus.now;
+        match self.trouble.change(now) {
+            Some(Change::Begins) => {
+                self.counts.add(TROUBLES[self.trouble.kind], 1);
+                (bus.is_down, bus.is_stalled) = (self.trouble.is_away(), self.trouble.is_still());
+                self.trouble.outage(now).into_iter().for_each(|outage| bus.bench.cut(outage));
+                if self.trouble.is_clock() {
+                    bus.ahead = bus.ahead.wrapping_sub(self.random.below(60_000));
                 }
             }
-            self.bus.now += 1 + self.random.below(15);
+            Some(Change::Ends) => {
+                (bus.is_down, bus.is_stalled) = (false, false);
+                bus.bench.no_other_controllers();
+            }
+            None => {}
+        }
+        if self.trouble.parts() {
+            self.watch.parted = now;
+        }
+        if self.trouble.parts() || self.has_given_way {
+            // Modules that were not fed meanwhile are found again in the next rounds.
+            bus.excused = now + 3 * ROUND;
+        }
+        if self.trouble.other_at.is_some_and(|at| now >= at) {
+            self.trouble.other_at = None;
+            self.another_controller();
+        }
+    }
+
+    /// Lets another controller do something with a module.
+    fn another_controller(&mut self) {
+        let kind = self.trouble.other;
+        let node = self.any_node();
+        let target = P::module(node.into()).expect("a module");
+        let one = |requests: Option<Request<P, ()>>| *requests.expect("there is a message").frame();
+        let read = P::read(&[Quantity::OUTPUT_VOLTAGE], target).expect("it is read").next();
+        let switch = P::set(&[(Quantity::DELIVERING, 1)], target).expect("it is legal").next();
+        let (frame, every) = match kind {
+            0 => (one(read), 100 + self.random.below(900)),
+            1 => (one(Some(self.sets(node, self.fleet.other_mv))), u32::MAX / 4),
+            _ => (one(switch), u32::MAX / 4),
+        };
+        let bus = &mut self.fleet.bus;
+        if kind > 0 {
+            bus.bench.no_other_controllers();
+            self.rivals += 1;
+        }
+        self.has_given_way = kind > 0 && self.watch.stopped.is_none();
+        self.watch.woken = (kind > 1).then_some(node).or(self.watch.woken);
+        bus.bench.another_controller(frame, every, bus.now).expect("there is no other one");
+        self.counts.add(OTHERS[kind], 1);
+    }
+
+    fn any_node(&mut self) -> u8 {
+        let count = u32::try_from(self.nodes.len()).expect("few");
+        self.nodes[usize::try_from(self.random.below(count)).expect("few")]
+    }
+
+    /// Sets the voltage of a module, and its current if that can be set.
+    fn sets(&self, node: u8, voltage_mv: i32) -> Request<P, ()> {
+        let target = P::module(node.into()).expect("a module");
+        let values = [(Quantity::OUTPUT_VOLTAGE, voltage_mv), (Quantity::OUTPUT_CURRENT, 1000)];
+        let values = if self.fleet.point.current_ma.is_some() { &values[..] } else { &values[..1] };
+        P::set(values, target).expect("it is legal").next().expect("one message has the voltage")
+    }
+
+    /// Lets time pass, in turns of the program.
+    fn pass(&mut self, until: u32) -> Result<(), String> {
+        while self.fleet.bus.now < until {
+            self.trouble();
+            let Fleet { bus, limits, .. } = &mut self.fleet;
+            bus.receive()?;
+            self.watch.received(bus);
+            bus.act();
+            self.watch.look(bus, limits)?;
+            bus.now += 1 + self.random.below(TURN);
         }
         Ok(())
     }
 
-    /// Draws the faults of a cycle, and revives modules. Each kind happens in the first cycle.
+    /// Draws the faults of a cycle, and revives modules. A restart, a death and a mute module happen in the first one.
     fn draw_faults(&mut self, cycle: u32) -> bool {
-        let now = self.bus.now;
+        let now = self.fleet.bus.now;
         let is_fair = cycle % 2 == 1;
-        for (place, node) in self.nodes.into_iter().enumerate() {
-            if self.bus.faults(node).dies.is_some() {
-                self.bus.bench.restart(node, now);
+        let stop = Trouble::longest(rules::<P>().watchdog) + QUIET;
+        for (place, node) in self.nodes.clone().into_iter().enumerate() {
+            if self.fleet.bus.faults(node).dies.is_some() {
+                self.fleet.bus.bench.restart(node, now);
             }
             let random = &mut self.random;
-            let drawn = Faults::random(random, if is_fair { FAIR } else { POOR }, DELIVER + STOP);
+            let drawn = Faults::random(random, if is_fair { FAIR } else { POOR }, DELIVER + stop);
             let (restarts, dies) = match (cycle, place) {
                 (0, 0) => (Some(random.below(DELIVER)), None),
                 (0, 1) => (None, Some(random.below(DELIVER))),
                 _ => (drawn.restarts, drawn.dies),
             };
             let slowest = 1 + random.below(if is_fair { 1 } else { 2 } * pace::<P>().wait);
-            *self.bus.faults(node) = Faults {
+            *self.fleet.bus.faults(node) = Faults {
                 // Half of what is lost is lost on the way to the module.
                 deaf: drawn.deaf / 2,
                 lost: drawn.lost / 2,
                 refused: drawn.refused / 3,
                 // A reply under another address says of one module what is true of another. Nothing shows that.
                 disguised: 0,
-                code: self.code,
+                code: self.fleet.code,
                 slowest,
                 restarts: restarts.map(|time| now + time),
                 dies: dies.map(|time| now + time),
                 ..drawn
             };
-            if (cycle, place) == (0, 2) {
-                self.make_mute(node);
-            }
+        }
+        if cycle == 0 {
+            self.make_mute(self.nodes[2]);
+        }
+        self.draw_lasting(cycle);
+        self.twin_leaves();
+        if cycle > 0 && self.random.chance(50) {
+            self.twin_comes();
         }
         is_fair
     }
 
-    /// Lets a module deliver that hears all and says nothing, as one that was switched on before and is not found.
-    fn make_mute(&mut self, node: u8) {
-        let Faults { code, .. } = *self.bus.faults(node);
-        *self.bus.faults(node) = Faults { lost: 100, code, ..Faults::NONE };
-        let device = self.bus.device(node);
-        (device.voltage_mv, device.current_ma, device.is_on) = (Some(OUTPUT.0), Some(OUTPUT.1), true);
+    /// Draws what a module does with one request for the whole cycle: an answer that is too short, or a refusal. It is none
+    /// that fails otherwise.
+    fn draw_lasting(&mut self, cycle: u32) {
+        let messages: Vec<_> = messages::<P>();
+        let fit = if cycle == 0 { 3..self.nodes.len() } else { 0..self.nodes.len() - 1 };
+        let mut draw =
+            |count: usize| usize::try_from(self.random.below(u32::try_from(count).expect("few"))).expect("few");
+        let places = [0; 2].map(|_| fit.start + draw(fit.len()));
+        let [short, refused] = [0; 2].map(|_| messages[draw(messages.len())]);
+        self.fleet.bus.faults(self.nodes[places[0]]).always_short = Some(short);
+        self.fleet.bus.faults(self.nodes[places[1]]).always_refused = Some(refused);
+        self.counts.add("modules whose answers to one request are always too short", 1);
+        self.counts.add("modules that always refuse one request", 1);
     }
 
-    /// Tests that each module delivers that has had the time.
+    /// Lets a module deliver that hears all and says nothing, as one that was switched on before and is not found.
+    fn make_mute(&mut self, node: u8) {
+        let Fleet { bus, point, .. } = &mut self.fleet;
+        let Faults { code, .. } = *bus.faults(node);
+        *bus.faults(node) = Faults { lost: 100, code, ..Faults::NONE };
+        let device = bus.device(node);
+        (device.voltage_mv, device.current_ma, device.is_on) = (Some(point.voltage_mv), point.current_ma, true);
+    }
+
+    /// Adds a module with the address of the last one, both without faults. In half of the cases it is on whatever it is
+    /// told.
+    fn twin_comes(&mut self) {
+        let Fleet { bus, point, .. } = &mut self.fleet;
+        let now = bus.now;
+        let Some(node) = self.nodes.last().copied() else { return };
+        let is_stuck = self.random.chance(50);
+        bus.bench.restart(node, now);
+        for (_, _, faults) in bus.bench.devices().filter(|(known, ..)| *known == node) {
+            *faults = Faults { slowest: pace::<P>().wait / 2, ..Faults::NONE };
+        }
+        let Some((_, twin, _)) = bus.bench.devices().last() else { return };
+        (twin.is_stuck, twin.is_on) = (is_stuck, is_stuck);
+        if is_stuck {
+            (twin.voltage_mv, twin.current_ma) = (Some(point.voltage_mv), point.current_ma);
+        }
+        self.watch.shared = Some(node);
+        self.counts.add("modules with the address of another one", 1);
+    }
+
+    /// Takes that module away.
+    fn twin_leaves(&mut self) {
+        let now = self.fleet.bus.now;
+        let Some((_, twin, faults)) = self.fleet.bus.bench.devices().last() else { return };
+        twin.is_stuck = false;
+        faults.dies = Some(now);
+        self.watch.shared = None;
+    }
+
+    /// Tests that each module delivers that has had the time, and refuses nothing for ever.
     fn check_output(&mut self) -> Result<(), String> {
-        for node in self.nodes {
-            let dies = self.bus.faults(node).dies;
-            let device = *self.bus.device(node);
-            if dies.is_none() && device.started + SETTLED < self.bus.now && !device.is_on {
+        for node in self.nodes.clone() {
+            let Faults { dies, always_short, always_refused, .. } = *self.fleet.bus.faults(node);
+            let device = *self.fleet.bus.device(node);
+            let is_fit = (dies, always_short, always_refused) == (None, None, None);
+            if is_fit && device.started + SETTLED < self.fleet.bus.now && !device.is_on {
                 return Err(format!("module {node} does not deliver"));
             }
         }
         Ok(())
     }
 
-    /// Tests that each live module is off.
+    /// Tests that each live module is off that does not refuse it for ever.
     fn check_off(&mut self) -> Result<(), String> {
-        for node in self.nodes {
-            if self.bus.bench.is_up(node) && self.bus.device(node).is_on {
+        let now = self.fleet.bus.now;
+        for (node, device, faults) in self.fleet.bus.bench.devices() {
+            let is_deaf = device.is_stuck || faults.always_refused == switch::<P>() || watch::is_dead(faults, now);
+            if device.is_on && !is_deaf {
                 return Err(format!("module {node} is on after a stop"));
             }
         }
@@ -310,98 +360,55 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
 
     /// Tests that each live module is known to be off, and each dead one unknown.
     fn check_states(&mut self) -> Result<(), String> {
-        for node in self.nodes {
-            let (state, is_dead) = (self.bus.state(node), self.bus.faults(node).dies.is_some());
+        let bus = &mut self.fleet.bus;
+        for node in self.nodes.clone() {
+            let (state, is_dead) = (bus.state(node), bus.faults(node).dies.is_some());
             let expected = if is_dead { Output::Unknown } else { Output::Off };
             if state != Some(expected) && !(is_dead && state.is_none()) {
                 return Err(format!("module {node} is {state:?}, not {expected:?}"));
             }
-            if is_dead && self.bus.station.voltage_mv(node, self.bus.clock()).fresh().is_some() {
-                return Err(format!("the voltage of the dead module {node} counts"));
-            }
-            self.counts.add(if is_dead { "dead modules unknown" } else { "modules found off" }, 1);
         }
         Ok(())
     }
 
-    /// Asks modules at random while they fail. Each request ends once, by its own answer or after all tries.
-    fn requests(&mut self) -> Result<(), String> {
-        let start = self.bus.now;
-        self.draw_faults(0);
-        let mut client: Client<P, 12> = Client::new(pace::<P>());
-        let mut asked: HashMap<Ticket, Asked> = HashMap::new();
-        for now in start..start + 20_000 {
-            while let Some(event) = self.bus.bench.poll(now) {
-                let Event::Frame { frame, at } = event else { continue };
-                match client.handle(&frame, at) {
-                    Heard::Answer { ticket, received } => {
-                        let said = received.setting(Quantity::OUTPUT_VOLTAGE);
-                        let own = asked.get_mut(&ticket).ok_or("an answer to what was not asked")?;
-                        if said != Some(own.voltage_mv) {
-                            return Err(format!("an answer to {} mV says {said:?}", own.voltage_mv));
-                        }
-                        own.answered += 1;
-                    }
-                    Heard::Refusal { ticket, .. } | Heard::ShortRefusal(ticket) => {
-                        asked.get_mut(&ticket).ok_or("a refusal of what was not asked")?.answered += 1;
-                    }
-                    _ => {}
-                }
-            }
-            loop {
-                match client.poll(now) {
-                    Step::Send { frame, ticket } => {
-                        asked.get_mut(&ticket).ok_or("what was not asked is sent")?.sent += 1;
-                        self.bus.bench.send(&frame, now);
-                    }
-                    Step::Lost(ticket) => asked.get_mut(&ticket).ok_or("what was not asked is lost")?.lost += 1,
-                    Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
-                    Step::ClockBack(_) => return Err("the clock goes back".into()),
-                    Step::Wait(_) => break,
-                }
-            }
-            if now < start + 8000 && self.random.chance(5) {
-                let voltage_mv = 300_000 + 100 * i32::try_from(asked.len()).expect("few");
-                if let Ok(ticket) = client.ask(self.request(voltage_mv), now) {
-                    asked.insert(ticket, Asked { voltage_mv, sent: 0, answered: 0, lost: 0 });
-                }
-            }
+    /// Tests that the program was told of each controller that has set something.
+    fn check_rivals(&mut self) -> Result<(), String> {
+        let told = self.fleet.bus.events.iter().filter(|(_, event)| matches!(event, Event::Rival(_))).count();
+        if told != self.rivals {
+            return Err(format!("other controllers have set something {} times, and {told} were told", self.rivals));
         }
-        let tries = pace::<P>().tries.into();
-        let ends_once = |own: &Asked| own.answered + own.lost == 1 && (own.lost == 0 || own.sent == tries);
-        if asked.len() < 20 || !asked.values().all(ends_once) {
-            return Err(format!("of {} requests, one does not end once, or is lost too early", asked.len()));
-        }
-        self.counts.add("requests answered or refused", asked.values().map(|own| own.answered).sum());
-        self.counts.add("requests lost", asked.values().map(|own| own.lost).sum());
         Ok(())
     }
 
-    /// Sets the voltage of one of two modules.
-    fn request(&mut self, voltage_mv: i32) -> Request<P, ()> {
-        let node = self.nodes[usize::try_from(self.random.below(2)).expect("below 2")];
-        let target = P::module(node.into()).expect("a module");
-        let values = [(Quantity::OUTPUT_VOLTAGE, voltage_mv), (Quantity::OUTPUT_CURRENT, 1000)];
-        P::set(&values, target).expect("it is legal").next().expect("one message has the voltage")
+    /// Lets a module answer every request.
+    fn answer_all(&mut self, node: u8) {
+        let faults = self.fleet.bus.faults(node);
+        (faults.always_short, faults.always_refused) = (None, None);
     }
 }
 
-/// A request, and how often it was sent and ended.
-struct Asked {
-    voltage_mv: i32,
-    sent: u64,
-    answered: u64,
-    lost: u64,
+/// Returns the message that switches a module off.
+fn switch<P: Quantities>() -> Option<&'static str> {
+    P::SETS.iter().find(|path| path.quantity == Quantity::DELIVERING).map(|path| path.request.message())
 }
 
-/// Runs a station of INFY modules, or of Maxwell ones, by a seed.
+/// Returns the messages that a station sends to each module.
+fn messages<P: Quantities>() -> Vec<&'static str> {
+    let is_used =
+        |quantity| [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING].contains(&quantity);
+    let reads = P::READS.iter().filter(|path| is_used(path.quantity)).filter_map(|path| path.request);
+    let sets = P::SETS.iter().filter(|path| is_used(path.quantity)).map(|path| path.request);
+    let mut messages: Vec<_> = reads.chain(sets).map(Exchange::message).collect();
+    messages.sort_unstable();
+    messages.dedup();
+    messages
+}
+
+/// Runs a station of INFY modules, of Maxwell ones or of MEGMEET ones, by a seed, for so many milliseconds or longer.
 pub fn run(seed: u64, end: u32) -> Result<Counts, String> {
-    let (random, counts) = (Random::new(!seed), Counts::default());
-    if seed.is_multiple_of(2) {
-        let (bus, nodes) = (crate::bus::fleets::infies(seed), [0, 1, 2, 3, 4, 5, 6, 7]);
-        Run { bus, groups: [1, 2], nodes, code: 4, random, counts, trouble: (u32::MAX, 0, 0) }.until(end)
-    } else {
-        let (bus, nodes) = (crate::bus::fleets::maxwells(seed), [3, 4, 5, 6]);
-        Run { bus, groups: [5], nodes, code: 0xF2, random, counts, trouble: (u32::MAX, 0, 0) }.until(end)
+    match seed % 3 {
+        0 => Run::new(fleet::infies(seed), seed).until(end),
+        1 => Run::new(fleet::maxwells(seed), seed).until(end),
+        _ => Run::new(fleet::megmeets(seed), seed).until(end),
     }
 }
