@@ -1,4 +1,11 @@
-# What people run; `.ci/run` runs the same things.
+# What people run. `.ci/run` runs the same things, but for what takes long.
+
+# What most changes break first.
+quick:
+    cargo fmt --all --check
+    cargo test --quiet --package canspec-runtime --package canspec-codegen --lib -- --skip random_programs --skip on_a_bus_with_faults
+    cargo test --quiet --package canspec-tests --test snapshots --test diagnostics --test prose --test markdown
+    cargo test --quiet --package canspec --test commands
 
 # Every test of the workspace.
 test:
@@ -7,6 +14,11 @@ test:
 # What a change must pass.
 ci:
     .ci/run
+
+# What takes too long for each change, and is run before an issue is closed.
+deep: (programs "200000") (random-specs "2000") sweep (seeds "10000")
+    CANSPEC_DEEP=1 cargo test --package canspec-tests --test links
+    cargo run --quiet --bin canspec-mutants -- --at-most 60
 
 # A table of how many bytes generated code takes, and the codec by hand; words choose among the rows.
 size *words:
@@ -38,8 +50,8 @@ random-specs count="10000" first="0":
     cargo run --quiet --bin random_specs -- {{count}} {{first}}
 
 # Random programs on a bus that loses and delays replies: what the client says of them must be true, and in time.
-deep count="200000":
-    CANSPEC_DEEP={{count}} cargo test --quiet --release --package canspec-runtime --lib random_programs -- --nocapture
+programs count="200000":
+    CANSPEC_PROGRAMS={{count}} cargo test --quiet --release --package canspec-runtime --lib random_programs -- --nocapture
 
 # A station whose modules fail, for some virtual minutes by each seed, and how often what happened.
 seeds count="10000" first="0" minutes="120":

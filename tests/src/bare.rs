@@ -182,7 +182,7 @@ pub fn is_installed(target: &str) -> bool {
 }
 
 /// How a program is compiled.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings<'a> {
     /// A profile of `tests/bare/Cargo.toml`: the optimization.
     pub profile: &'a str,

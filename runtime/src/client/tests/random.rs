@@ -23,7 +23,7 @@ use crate::{Frame, Request};
 /// How long a run takes.
 const END: u32 = 500;
 const GROUP: To = To::Group(2);
-/// How many runs the tests make, unless the environment variable `CANSPEC_DEEP` says how many.
+/// How many runs the tests make, unless the environment variable `CANSPEC_PROGRAMS` says how many.
 const RUNS: u64 = 2000;
 
 type Asking = Client<Message, 24, 1>;
@@ -102,7 +102,7 @@ struct Run {
 #[test]
 #[expect(clippy::print_stdout, reason = "people read how much was tried")]
 fn what_random_programs_are_told_is_true_and_in_time() {
-    let runs = env::var("CANSPEC_DEEP").map_or(RUNS, |runs| runs.parse().expect("a number of runs"));
+    let runs = env::var("CANSPEC_PROGRAMS").map_or(RUNS, |runs| runs.parse().expect("a number of runs"));
     let (mut all, mut failed) = (Counts::default(), vec![]);
     for seed in 0..runs {
         let run = Run::new(seed).finished();
