@@ -45,6 +45,7 @@
 mod drive;
 mod driver;
 mod event;
+mod fit;
 mod hear;
 mod known;
 mod module;
@@ -56,18 +57,14 @@ mod tests;
 
 use crate::client::{Bus, Client, Heard, Output, Step as Asked, Ticket};
 use crate::clock::{Steady, has_come};
-use crate::{Addressed, AfterSilence, Protocol, Quantities, Quantity, Received, Replies, Request, Severity};
+use crate::{Addressed, Quantities, Request};
 pub use drive::{Drive, pump};
 pub use driver::{Blocking, Driver, NonBlocking, listen};
 pub use event::{Event, Rival, Step};
 use hear::sender;
 pub use known::Known;
-use known::known;
 use module::{Goal, Module, Task};
 pub use settings::{Beyond, Found, Limits, Refused, Rivals, SetPoint, Settings, Unfit};
-
-/// The longest time in milliseconds that a station counts, which is six days.
-const LONGEST: u32 = 1 << 29;
 
 /// A group of modules.
 #[derive(Clone, Copy, Debug)]
@@ -129,24 +126,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// - what is to be adopted if it is beyond a limit, or the document does not allow it.
     pub fn new(settings: Settings, addresses: [u8; M], groups: [(u8, Option<P::Target>); G]) -> Result<Self, Unfit> {
         const { assert!(R >= Self::ROOM, "the station needs more room for requests: at least `Station::ROOM`") }
-        fits_time::<P>(&settings, M)?;
-        if !request::is_read::<P>(Quantity::DELIVERING) {
-            return Err(Unfit::Unread);
-        }
-        let mut may_wake = settings.found == Found::Watch;
-        for node in addresses {
-            let target = P::module(node.into()).ok_or(Unfit::Address(node))?;
-            let off = request::switch_off::<P>(&settings, target).map_err(Unfit::Document)?;
-            if off.ok_or(Unfit::Address(node))?.replies() == Replies::Nobody {
-                return Err(Unfit::Unanswered);
-            }
-            if let Found::Adopt(point) = settings.found {
-                settings.limits.allow(point).map_err(Unfit::Beyond)?;
-                request::deliver::<P>(&settings, target, point).map_err(Unfit::Document)?;
-                // What cannot be set alone is read first.
-                may_wake |= request::prepare::<P>(&settings, target, point).iter().all(Option::is_none);
-            }
-        }
+        let may_wake = fit::fits::<P>(&settings, &addresses)?;
         let client = Client::new(settings.pace);
         let mut station = Self {
             settings,
@@ -162,79 +142,11 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             others: Task::AsFound,
             has_emergency: false,
             clock: Steady::NEW,
-            news: News { clock_back: 0, rival: None, is_kept_on: false, may_wake: may_wake && can_wake::<P>() },
+            news: News { clock_back: 0, rival: None, is_kept_on: false, may_wake },
             next: None,
         };
         station.know_members();
         Ok(station)
-    }
-
-    /// Returns the addresses of the modules that answer.
-    pub fn modules(&self) -> impl Iterator<Item = u8> {
-        self.modules.iter().filter(|module| module.heard.is_some()).map(|module| module.node)
-    }
-
-    /// Returns the group of a module, if it has said it, or the program.
-    pub fn group(&self, node: u8) -> Option<u8> {
-        self.module(node)?.group
-    }
-
-    /// Returns what is known of the output of a module. It is only off if it has said so since it confirmed that it is
-    /// to be off, and not longer ago than values count.
-    pub fn output(&self, node: u8, now: u32) -> Output {
-        let now = self.clock.steady(now);
-        self.module(node).map_or(Output::Unknown, |module| module.output(self.settings.valid, now))
-    }
-
-    /// Returns the voltage at the output of a module, in mV.
-    pub fn voltage_mv(&self, node: u8, now: u32) -> Known<i32> {
-        self.known(self.module(node).and_then(|module| module.voltage_mv), now)
-    }
-
-    /// Returns the current at the output of a module, in mA.
-    pub fn current_ma(&self, node: u8, now: u32) -> Known<i32> {
-        self.known(self.module(node).and_then(|module| module.current_ma), now)
-    }
-
-    /// Returns the worst of what a module reports. It is `None` if it reports nothing that has a severity.
-    pub fn severity(&self, node: u8, now: u32) -> Known<Option<Severity>> {
-        let status = self.module(node).and_then(|module| module.status);
-        let worst = status.map(|said| known::Said { value: module::severity(&said.value), at: said.at });
-        self.known(worst, now)
-    }
-
-    /// Returns what a module has said of its state last, for [`Received::conditions`].
-    pub fn status(&self, node: u8) -> Option<&Received<P>> {
-        self.module(node)?.status.as_ref().map(|said| &said.value)
-    }
-
-    /// Returns what a module is told to deliver now, if it is.
-    pub fn told(&self, node: u8) -> Option<SetPoint> {
-        match self.module(node)?.goal {
-            Goal::Output { point, .. } => Some(point),
-            Goal::Off | Goal::Read | Goal::Leave => None,
-        }
-    }
-
-    /// Tests whether a group is known to be off. It has modules, and each has said so since it was stopped. What was
-    /// said longer ago than values count does not count.
-    pub fn is_off(&self, group: u8, now: u32) -> bool {
-        let now = self.clock.steady(now);
-        let mut members = self.members(group).peekable();
-        members.peek().is_some() && members.all(|module| module.output(self.settings.valid, now) == Output::Off)
-    }
-
-    /// Tests whether a contactor at the output of a group may open. What was never found does not count, so compare
-    /// [`modules`](Self::modules) with those that are built in. Each of its modules is known to be off, and has
-    /// measured less than [`open_mv`](Limits::open_mv).
-    pub fn is_safe_to_open(&self, group: u8, now: u32) -> bool {
-        let Settings { valid, limits, .. } = self.settings;
-        let at = self.clock.steady(now);
-        let is_low = |module: &Module<P>| {
-            let voltage = module.voltage_mv.and_then(|said| said.fresh(valid, at));
-            voltage.is_some_and(|voltage| voltage.saturating_abs() < limits.open_mv)
-        };
-        self.is_off(group, now) && self.members(group).all(is_low)
     }
 
     /// Lets each module of a group deliver. Its current comes to a greater one step by step. To say it again changes
@@ -283,7 +195,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             return Err(Refused::Emergency);
         }
         self.take(now);
-        self.news.may_wake |= can_wake::<P>();
+        self.news.may_wake |= fit::can_wake::<P>();
         self.begin(index, Task::Watch);
         Ok(())
     }
@@ -415,21 +327,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         now
     }
 
-    fn known<T: Copy>(&self, said: Option<known::Said<T>>, now: u32) -> Known<T> {
-        match known(said, self.settings.valid, self.clock.steady(now)) {
-            Known::Stale { value, since } => Known::Stale { value, since: self.clock.of_program(since) },
-            known @ (Known::Fresh(_) | Known::Unknown) => known,
-        }
-    }
-
-    fn module(&self, node: u8) -> Option<&Module<P>> {
-        self.modules.iter().find(|module| module.node == node)
-    }
-
-    fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
-        self.modules.iter().filter(move |module| module.group == Some(group))
-    }
-
     fn place_of(&self, number: u8) -> Result<usize, Refused> {
         self.groups.iter().position(|group| group.number == number).ok_or(Refused::Group(number))
     }
@@ -471,32 +368,4 @@ fn is_raised(goal: Goal, task: Task) -> bool {
         }
         _ => false,
     }
-}
-
-/// Tests whether modules can come back as they were when they hear anything, or whether the document does not say it.
-const fn can_wake<P: Protocol>() -> bool {
-    matches!(P::AFTER_SILENCE, AfterSilence::Resumes | AfterSilence::Starts | AfterSilence::Unknown)
-}
-
-/// Tests whether the times of a station fit the document.
-fn fits_time<P: Quantities>(settings: &Settings, modules: usize) -> Result<(), Unfit> {
-    let Settings { pace, round, valid, .. } = *settings;
-    let watchdog = watchdog::<P>().unwrap_or(LONGEST);
-    let frames = u32::try_from(modules.saturating_mul(request::each_round::<P>())).unwrap_or(u32::MAX);
-    // A request that nobody answers ends before the next round.
-    let ends = pace.wait.saturating_add(pace.late).saturating_add(1);
-    let (least, most) = (frames.saturating_mul(pace.gap).max(ends), watchdog / 3);
-    if round < least || round > most {
-        return Err(Unfit::Round { least, most });
-    }
-    if valid < round || valid > watchdog {
-        return Err(Unfit::Valid { least: round, most: watchdog });
-    }
-    Ok(())
-}
-
-/// Returns the silence after which a module acts by itself, in milliseconds.
-fn watchdog<P: Protocol>() -> Option<u32> {
-    let shortest = P::TIMING.watchdog?.shortest.as_millis();
-    Some(u32::try_from(shortest).unwrap_or(LONGEST).min(LONGEST))
 }

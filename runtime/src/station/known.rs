@@ -1,6 +1,10 @@
 //! What is known of a value, and how old that is.
 
+use super::module::{self, Module};
+use super::{Goal, SetPoint, Settings, Station};
+use crate::client::Output;
 use crate::clock::has_lasted;
+use crate::{Addressed, Quantities, Received, Severity};
 
 /// What is known of a value at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +44,86 @@ impl<T: Copy> Said<T> {
     }
 }
 
-/// Returns what is known of what a module has said.
-pub fn known<T: Copy>(said: Option<Said<T>>, valid: u32, now: u32) -> Known<T> {
-    let Some(said) = said else { return Known::Unknown };
-    said.fresh(valid, now).map_or(Known::Stale { value: said.value, since: said.at }, Known::Fresh)
+impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
+    /// Returns the addresses of the modules that answer.
+    pub fn modules(&self) -> impl Iterator<Item = u8> {
+        self.modules.iter().filter(|module| module.heard.is_some()).map(|module| module.node)
+    }
+
+    /// Returns the group of a module, if it has said it, or the program.
+    pub fn group(&self, node: u8) -> Option<u8> {
+        self.module(node)?.group
+    }
+
+    /// Returns what is known of the output of a module. It is only off if it has said so since it confirmed that it is
+    /// to be off, and not longer ago than values count.
+    pub fn output(&self, node: u8, now: u32) -> Output {
+        let now = self.clock.steady(now);
+        self.module(node).map_or(Output::Unknown, |module| module.output(self.settings.valid, now))
+    }
+
+    /// Returns the voltage at the output of a module, in mV.
+    pub fn voltage_mv(&self, node: u8, now: u32) -> Known<i32> {
+        self.known(self.module(node).and_then(|module| module.voltage_mv), now)
+    }
+
+    /// Returns the current at the output of a module, in mA.
+    pub fn current_ma(&self, node: u8, now: u32) -> Known<i32> {
+        self.known(self.module(node).and_then(|module| module.current_ma), now)
+    }
+
+    /// Returns the worst of what a module reports. It is `None` if it reports nothing that has a severity.
+    pub fn severity(&self, node: u8, now: u32) -> Known<Option<Severity>> {
+        let status = self.module(node).and_then(|module| module.status);
+        let worst = status.map(|said| Said { value: module::severity(&said.value), at: said.at });
+        self.known(worst, now)
+    }
+
+    /// Returns what a module has said of its state last, for [`Received::conditions`].
+    pub fn status(&self, node: u8) -> Option<&Received<P>> {
+        self.module(node)?.status.as_ref().map(|said| &said.value)
+    }
+
+    /// Returns what a module is told to deliver now, if it is.
+    pub fn told(&self, node: u8) -> Option<SetPoint> {
+        match self.module(node)?.goal {
+            Goal::Output { point, .. } => Some(point),
+            Goal::Off | Goal::Read | Goal::Leave => None,
+        }
+    }
+
+    /// Tests whether a group is known to be off. It has modules, and each has said so since it was stopped. What was
+    /// said longer ago than values count does not count.
+    pub fn is_off(&self, group: u8, now: u32) -> bool {
+        let now = self.clock.steady(now);
+        let mut members = self.members(group).peekable();
+        members.peek().is_some() && members.all(|module| module.output(self.settings.valid, now) == Output::Off)
+    }
+
+    /// Tests whether a contactor at the output of a group may open. What was never found does not count, so compare
+    /// [`modules`](Self::modules) with those that are built in. Each of its modules is known to be off, and has
+    /// measured less than [`open_mv`](Limits::open_mv).
+    pub fn is_safe_to_open(&self, group: u8, now: u32) -> bool {
+        let Settings { valid, limits, .. } = self.settings;
+        let at = self.clock.steady(now);
+        let is_low = |module: &Module<P>| {
+            let voltage = module.voltage_mv.and_then(|said| said.fresh(valid, at));
+            voltage.is_some_and(|voltage| voltage.saturating_abs() < limits.open_mv)
+        };
+        self.is_off(group, now) && self.members(group).all(is_low)
+    }
+
+    fn known<T: Copy>(&self, said: Option<Said<T>>, now: u32) -> Known<T> {
+        let Some(said) = said else { return Known::Unknown };
+        let stale = Known::Stale { value: said.value, since: self.clock.of_program(said.at) };
+        said.fresh(self.settings.valid, self.clock.steady(now)).map_or(stale, Known::Fresh)
+    }
+
+    pub(super) fn module(&self, node: u8) -> Option<&Module<P>> {
+        self.modules.iter().find(|module| module.node == node)
+    }
+
+    pub(super) fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
+        self.modules.iter().filter(move |module| module.group == Some(group))
+    }
 }

@@ -1,7 +1,7 @@
 //! What a station knows of a module, and what it asks of it.
 
-use super::LONGEST;
 use super::event::Event;
+use super::fit::LONGEST;
 use super::known::Said;
 use super::settings::SetPoint;
 use crate::client::{Client, Duty, Output, Ticket};

@@ -1,7 +1,8 @@
 //! What a station asks in each round.
 
+use super::fit::watchdog;
 use super::module::{Goal, Module, Read, Task};
-use super::{Event, Found, SetPoint, Settings, Station, request, watchdog};
+use super::{Event, Found, SetPoint, Settings, Station, request};
 use crate::client::{Full, NotHeld, Output, Pace};
 use crate::clock::{earlier, has_come, has_lasted};
 use crate::{Addressed, Quantities, Received, Request};

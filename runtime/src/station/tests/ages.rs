@@ -5,9 +5,10 @@ use super::chargers::{InGroups, Message};
 use super::deliver::{deliver, known};
 use crate::Received;
 use crate::client::{Output, Pace};
+use crate::station::fit::LONGEST;
 use crate::station::known::Said;
 use crate::station::module::Module;
-use crate::station::{Event, Found, Known, LONGEST, Settings};
+use crate::station::{Event, Found, Known, Settings};
 
 const STARTS: [u32; 5] = [0, (1 << 31) - 2500, 1 << 31, (1 << 31) + 5, u32::MAX - 2500];
 
