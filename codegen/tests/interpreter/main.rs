@@ -13,6 +13,7 @@ mod requests;
 mod revisions;
 mod scales;
 mod texts;
+mod values;
 mod writing;
 
 use std::fs;
