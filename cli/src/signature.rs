@@ -9,15 +9,31 @@ struct Kind {
 }
 
 const KINDS: &[Kind] = &[
-    Kind { begins: &[b"\x1F\x8B"], name: "is compressed by gzip", help: "write `zcat FILE.gz | canspec decode -`" },
+    Kind {
+        begins: &[b"\x1F\x8B"],
+        name: "is compressed by gzip",
+        help: "write `zcat FILE.gz | canspec decode --protocol NAME -`",
+    },
     Kind {
         begins: &[b"\x28\xB5\x2F\xFD"],
         name: "is compressed by zstd",
-        help: "write `zstdcat FILE.zst | canspec decode -`",
+        help: "write `zstdcat FILE.zst | canspec decode --protocol NAME -`",
     },
-    Kind { begins: &[b"\xFD7zXZ\0"], name: "is compressed by xz", help: "write `xzcat FILE.xz | canspec decode -`" },
-    Kind { begins: &[b"BZh"], name: "is compressed by bzip2", help: "write `bzcat FILE.bz2 | canspec decode -`" },
-    Kind { begins: &[b"PK\x03\x04"], name: "is a ZIP archive", help: "write `unzip -p FILE.zip | canspec decode -`" },
+    Kind {
+        begins: &[b"\xFD7zXZ\0"],
+        name: "is compressed by xz",
+        help: "write `xzcat FILE.xz | canspec decode --protocol NAME -`",
+    },
+    Kind {
+        begins: &[b"BZh"],
+        name: "is compressed by bzip2",
+        help: "write `bzcat FILE.bz2 | canspec decode --protocol NAME -`",
+    },
+    Kind {
+        begins: &[b"PK\x03\x04"],
+        name: "is a ZIP archive",
+        help: "write `unzip -p FILE.zip | canspec decode --protocol NAME -`",
+    },
     Kind {
         begins: &[b"LOGG"],
         name: "is a binary log of Vector (BLF)",

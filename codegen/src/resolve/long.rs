@@ -290,7 +290,11 @@ impl Resolver<'_> {
         let is_alike = |other: &Varying| !other.is_text && (other.least, other.most) == (field.least, field.most);
         if let Some(other) = varying.find(|other| !is_alike(other)) {
             let text = format!("`{}` and `{}` vary in length, each in its own way", field.name, other.name);
-            return refuse(&at, text, "only one field has a range in `repeat` or ends open, and it stands last");
+            return refuse(
+                &at,
+                text,
+                "arrays that vary have the same `repeat`, an open text varies alone, and both stand last",
+            );
         }
         let is_its = |signal: &&Signal| long.counted(signal).is_some() || signal.run.is_some_and(ByteRun::varies);
         let start = content.signals.iter().filter(is_its).map(|signal| signal.bytes().start).min().unwrap_or(0);
