@@ -30,14 +30,16 @@
 //! # What it promises
 //!
 //! - *Set-points come first.* A module is switched on only after the echo of its set-point has agreed, in each renewal
-//!   anew. So a module that restarts is not switched on without one.
+//!   anew. So a module that restarts is not switched on without one, unless it starts faster than a switch-on waits for
+//!   the bus.
 //! - *A stop cannot fail.* It goes to the group first, and then to each module, again and again, also to those that do
 //!   not answer. There is always room for it. [`is_off`](Station::is_off) tells whether each module has said since
 //!   then that it is off.
 //! - *What the program wants comes first after silence.* Some modules come back as they were as soon as they
 //!   [hear anything](crate::AfterSilence). So a module that has not answered in time is not read. It is told what it
 //!   is to do until it answers.
-//! - *Everything known has an age.* What was said longer ago than [`valid`](Settings::valid) does not count.
+//! - *Everything known has an age.* What was said longer ago than [`valid`](Settings::valid) does not count. Only
+//!   [`group`](Station::group) and [`status`](Station::status) are what was said last.
 //! - *No limit is passed.* Each output goes through the [`Limits`].
 //!
 //! Frames that the program itself has sent must not be handed over.
@@ -63,7 +65,7 @@ pub use driver::{Blocking, Driver, NonBlocking, listen};
 pub use event::{Event, Rival, Step};
 use hear::sender;
 pub use known::Known;
-use module::{Goal, Module, Task};
+use module::{Goal, Module, Placed, Task};
 pub use settings::{Beyond, Found, Limits, Refused, Rivals, SetPoint, Settings, Unfit};
 
 /// A group of modules.
@@ -100,7 +102,6 @@ pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, co
 /// What the program is to be told of the bus.
 #[derive(Clone, Copy, Debug)]
 struct News {
-    clock_back: u32,
     rival: Option<Rival>,
     is_kept_on: bool,
     may_wake: bool,
@@ -113,7 +114,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Returns a station that looks for modules at `addresses`. Each group has its number, and what addresses all of
     /// its modules, if the document has that.
     ///
-    /// Modules of protocols with a [group](Quantity::GROUP) say which one they are in. Others are
+    /// Modules of protocols with a [group](crate::Quantity::GROUP) say which one they are in. Others are
     /// [assigned](Self::assign) by the program.
     ///
     /// # Errors
@@ -123,10 +124,11 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// - values that count for less than a round, or longer than the watchdog,
     /// - a protocol in which no module answers when it is switched off, or none is asked whether it delivers,
     /// - an address at which no module is switched off, as the document says,
-    /// - what is to be adopted if it is beyond a limit, or the document does not allow it.
+    /// - what is to be adopted if it would be [refused](Self::deliver) to deliver it,
+    /// - an address or a group that is named twice, and limits that contradict each other.
     pub fn new(settings: Settings, addresses: [u8; M], groups: [(u8, Option<P::Target>); G]) -> Result<Self, Unfit> {
         const { assert!(R >= Self::ROOM, "the station needs more room for requests: at least `Station::ROOM`") }
-        let may_wake = fit::fits::<P>(&settings, &addresses)?;
+        let may_wake = fit::fits::<P>(&settings, &addresses, groups.iter().map(|(number, _)| *number))?;
         let client = Client::new(settings.pace);
         let mut station = Self {
             settings,
@@ -142,7 +144,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             others: Task::AsFound,
             has_emergency: false,
             clock: Steady::NEW,
-            news: News { clock_back: 0, rival: None, is_kept_on: false, may_wake },
+            news: News { rival: None, is_kept_on: false, may_wake },
             next: None,
         };
         station.know_members();
@@ -154,19 +156,19 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     ///
     /// # Errors
     ///
-    /// Refuses an unknown group, an output beyond a limit, and what the document does not allow. The group then goes on
-    /// as before. It also refuses to deliver until an emergency has been [ended](Self::end_emergency).
+    /// Refuses an unknown group, an output beyond a limit, one without a current if the protocol can set that, and what
+    /// the document does not allow or nobody answers. The group then goes on as before. It also refuses to deliver until
+    /// an emergency has been [ended](Self::end_emergency).
     pub fn deliver(&mut self, group: u8, point: SetPoint, now: u32) -> Result<(), Refused> {
         let index = self.place_of(group)?;
         if self.has_emergency {
             return Err(Refused::Emergency);
         }
-        self.settings.limits.allow(point).map_err(Refused::Beyond)?;
         let targets = self.modules.iter().filter_map(|module| P::module(module.node.into()));
         for target in targets {
-            request::deliver::<P>(&self.settings, target, point).map_err(Refused::Output)?;
+            fit::allows::<P>(&self.settings, target, point)?;
         }
-        self.take(now);
+        self.note(now);
         self.begin(index, Task::Deliver(point));
         Ok(())
     }
@@ -178,7 +180,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Refuses an unknown group.
     pub fn stop(&mut self, group: u8, now: u32) -> Result<(), Refused> {
         let index = self.place_of(group)?;
-        self.take(now);
+        self.note(now);
         self.begin(index, Task::Stop);
         Ok(())
     }
@@ -194,7 +196,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if self.has_emergency {
             return Err(Refused::Emergency);
         }
-        self.take(now);
+        self.note(now);
         self.news.may_wake |= fit::can_wake::<P>();
         self.begin(index, Task::Watch);
         Ok(())
@@ -203,7 +205,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Stops all groups and all modules, before anything else. None delivers until the emergency has
     /// [ended](Self::end_emergency).
     pub fn emergency(&mut self, now: u32) {
-        self.take(now);
+        self.note(now);
         self.has_emergency = true;
         self.others = Task::Stop;
         self.modules.iter_mut().for_each(|module| module.due = None);
@@ -223,17 +225,17 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// off.
     pub fn assign(&mut self, node: u8, group: Option<u8>, now: u32) -> Result<(), Refused> {
         group.map_or(Ok(()), |group| self.place_of(group).map(|_| ()))?;
-        let now = self.take(now);
+        let now = self.note(now);
         let valid = self.settings.valid;
         let module = self.modules.iter_mut().find(|module| module.node == node).ok_or(Refused::Address(node))?;
         if module.group == group {
-            module.is_assigned = true;
+            module.placed = Placed::ByProgram;
             return Ok(());
         }
         if module.group.is_some() && module.heard.is_some() && module.output(valid, now) != Output::Off {
             return Err(Refused::NotOff);
         }
-        (module.is_assigned, module.due) = (true, None);
+        (module.placed, module.due) = (Placed::ByProgram, None);
         self.join(node, group);
         Ok(())
     }
@@ -273,7 +275,10 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Says what to do next. Call it until it waits, after all frames from the bus were handled.
     pub fn poll(&mut self, now: u32) -> Step {
-        let now = self.take(now);
+        let now = self.clock.pass(now);
+        if let Some(by) = self.clock.went_back() {
+            return Step::Event(Event::ClockBack { by });
+        }
         if let Some(next) = self.next.filter(|next| !has_come(*next, now)) {
             return Step::Wait(self.clock.of_program(next));
         }
@@ -303,28 +308,22 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Takes back a frame that the driver did not take. It counts as no try, and is sent again after the gap. Call it
     /// before the next [`poll`](Self::poll).
     pub fn not_sent(&mut self, ticket: Ticket, now: u32) {
-        let now = self.take(now);
+        let now = self.note(now);
         self.client.not_sent(ticket, now);
         self.modules.iter_mut().for_each(|module| module.not_sent(ticket));
-        self.next = None;
     }
 
     /// Notes that the bus is on or off. While it is off, nothing is sent, and no request is lost. A module that was not
     /// heard in time meanwhile is told first what the program wants of it.
     pub fn bus(&mut self, bus: Bus, now: u32) {
-        let now = self.take(now);
+        let now = self.note(now);
         self.client.bus(bus, now);
-        self.next = None;
     }
 
-    /// Takes the time of the program's clock.
-    fn take(&mut self, now: u32) -> u32 {
-        let now = self.clock.pass(now);
-        if let Some(back) = self.clock.went_back() {
-            self.news.clock_back = self.news.clock_back.saturating_add(back);
-            self.next = None;
-        }
-        now
+    /// Takes the time of the program's clock, when the program tells something. After that there may be something to do.
+    fn note(&mut self, now: u32) -> u32 {
+        self.next = None;
+        self.clock.pass(now)
     }
 
     fn place_of(&self, number: u8) -> Result<usize, Refused> {
@@ -336,7 +335,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let Self { client, modules, .. } = self;
         let Some(group) = self.groups.get_mut(index).filter(|group| group.task != task) else { return };
         group.task = task;
-        self.next = None;
         group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
         for module in modules.iter_mut().filter(|module| module.group == Some(group.number)) {
             // Faster than it is in effect, it would never be switched on.

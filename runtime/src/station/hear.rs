@@ -1,8 +1,8 @@
 //! What a station hears.
 
-use super::module::{Goal, Module, Task};
-use super::{Found, Rival, Rivals, Station};
-use crate::client::{Nodes, Ticket};
+use super::module::{Goal, Module, Placed, Task};
+use super::{Found, Group, Rival, Rivals, Station};
+use crate::client::{Nodes, Output, Ticket};
 use crate::{Addressed, Protocol, Quantities, Quantity, Received};
 
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
@@ -22,9 +22,16 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         module.answers(at);
         let said = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok());
         let Some(group) = said else { return };
-        module.has_group = true;
-        if !module.is_assigned && module.group != Some(group) {
-            let node = module.node;
+        if module.placed == Placed::ByProgram {
+            return;
+        }
+        module.placed = Placed::ByItself;
+        if module.group != Some(group) {
+            let (node, left) = (module.node, module.group);
+            let delivers =
+                |known: &Group<P::Target>| Some(known.number) == left && matches!(known.task, Task::Deliver(_));
+            // Nobody may keep it on that does not know of it.
+            module.has_left |= self.groups.iter().any(delivers) && module.duty.output() != Output::Off;
             self.join(node, Some(group));
         }
     }
@@ -109,7 +116,10 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         self.news.is_kept_on |= has_given && task == Task::Watch;
         if has_given {
             // Nobody knows from which current it rises when the program takes it back.
-            self.modules.iter_mut().for_each(|module| (module.due, module.reached_ma) = (None, 0));
+            self.modules.iter_mut().for_each(|module| {
+                module.due = None;
+                module.rise_anew();
+            });
         }
     }
 

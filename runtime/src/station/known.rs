@@ -1,9 +1,9 @@
 //! What is known of a value, and how old that is.
 
 use super::module::{self, Module};
-use super::{Goal, SetPoint, Settings, Station};
+use super::{Goal, SetPoint, Settings, Station, Task};
 use crate::client::Output;
-use crate::clock::has_lasted;
+use crate::clock::{has_come, has_lasted};
 use crate::{Addressed, Quantities, Received, Severity};
 
 /// What is known of a value at a time.
@@ -55,8 +55,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         self.module(node)?.group
     }
 
-    /// Returns what is known of the output of a module. It is only off if it has said so since it confirmed that it is
-    /// to be off, and not longer ago than values count.
+    /// Returns what is known of the output of a module. It is only off if it has said so since it confirmed what it was
+    /// told last, and not longer ago than values count. One that has tripped says so, too, and is switched on again.
     pub fn output(&self, node: u8, now: u32) -> Output {
         let now = self.clock.steady(now);
         self.module(node).map_or(Output::Unknown, |module| module.output(self.settings.valid, now))
@@ -92,25 +92,31 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         }
     }
 
-    /// Tests whether a group is known to be off. It has modules, and each has said so since it was stopped. What was
-    /// said longer ago than values count does not count.
+    /// Tests whether a group is known to be off: it is not to deliver, it has modules, and each has said that it is off
+    /// since it was told so. What was said longer ago than values count does not count. A module whose group is not
+    /// known counts for each group.
     pub fn is_off(&self, group: u8, now: u32) -> bool {
         let now = self.clock.steady(now);
-        let mut members = self.members(group).peekable();
-        members.peek().is_some() && members.all(|module| module.output(self.settings.valid, now) == Output::Off)
+        let delivers = self.groups.iter().any(|known| known.number == group && matches!(known.task, Task::Deliver(_)));
+        let is_off = |module: &Module<P>| {
+            !matches!(module.goal, Goal::Output { .. }) && module.output(self.settings.valid, now) == Output::Off
+        };
+        !delivers && self.members(group).next().is_some() && self.possible_members(group).all(is_off)
     }
 
     /// Tests whether a contactor at the output of a group may open. What was never found does not count, so compare
     /// [`modules`](Self::modules) with those that are built in. Each of its modules is known to be off, and has
-    /// measured less than [`open_mv`](Limits::open_mv).
+    /// measured less than [`open_mv`](super::Limits::open_mv) since it says so.
     pub fn is_safe_to_open(&self, group: u8, now: u32) -> bool {
         let Settings { valid, limits, .. } = self.settings;
         let at = self.clock.steady(now);
         let is_low = |module: &Module<P>| {
-            let voltage = module.voltage_mv.and_then(|said| said.fresh(valid, at));
+            // What was measured before it was off says nothing of the time after that.
+            let said = module.voltage_mv.filter(|said| has_come(module.off_since, said.at));
+            let voltage = said.and_then(|said| said.fresh(valid, at));
             voltage.is_some_and(|voltage| voltage.saturating_abs() < limits.open_mv)
         };
-        self.is_off(group, now) && self.members(group).all(is_low)
+        self.is_off(group, now) && self.possible_members(group).all(is_low)
     }
 
     fn known<T: Copy>(&self, said: Option<Said<T>>, now: u32) -> Known<T> {
@@ -123,7 +129,13 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         self.modules.iter().find(|module| module.node == node)
     }
 
-    pub(super) fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
+    fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
         self.modules.iter().filter(move |module| module.group == Some(group))
+    }
+
+    /// Returns the members of a group, and what answers and can be one.
+    pub(super) fn possible_members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {
+        let is_known = |module: &&Module<P>| module.group.is_some() || module.heard.is_some();
+        self.modules.iter().filter(move |module| module.hears(group)).filter(is_known)
     }
 }

@@ -30,10 +30,8 @@ pub struct Module<P: Protocol> {
     pub node: u8,
     /// Its group, if it has said so, or the program.
     pub group: Option<u8>,
-    /// Whether the program has said so.
-    pub is_assigned: bool,
-    /// Whether its group is known since it answers.
-    pub has_group: bool,
+    /// Who has said so.
+    pub placed: Placed,
     /// When it answered last. It is none before it does, and after it has not for so long that it may act by itself.
     pub heard: Option<u32>,
     /// What it is to do, as requests.
@@ -44,6 +42,8 @@ pub struct Module<P: Protocol> {
     pub once: Option<Ticket>,
     /// When it has said whether it delivers.
     pub said_at: u32,
+    /// When it said first that it is off, if it is.
+    pub off_since: u32,
     pub voltage_mv: Option<Said<i32>>,
     pub current_ma: Option<Said<i32>>,
     /// What it has said of its state last.
@@ -56,10 +56,27 @@ pub struct Module<P: Protocol> {
     pub is_met: bool,
     /// The current that has been in effect since it was told to deliver, in mA.
     pub reached_ma: i32,
+    /// The step to which its current may rise, and since when.
+    pub step: Option<Said<i32>>,
+    /// Whether it has left a group that delivers, and was not off since then.
+    pub has_left: bool,
+    /// Whether the document does not allow what it could do in its last round.
+    pub is_impossible: bool,
     /// Whether it delivered when it was found.
     pub was_on: Option<bool>,
     pub conflict: Conflict,
     pub told: Told,
+}
+
+/// Who has said which group a module is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placed {
+    /// Nobody since it answers.
+    Unknown,
+    /// It has.
+    ByItself,
+    /// The program has, which knows better.
+    ByProgram,
 }
 
 /// What a station wants of a module.
@@ -159,13 +176,13 @@ impl<P: Protocol> Module<P> {
         Self {
             node,
             group: None,
-            is_assigned: false,
-            has_group: false,
+            placed: Placed::Unknown,
             heard: None,
             duty: Duty::new(node),
             reads: [Read::NONE; 3],
             once: None,
             said_at: 0,
+            off_since: 0,
             voltage_mv: None,
             current_ma: None,
             status: None,
@@ -173,6 +190,9 @@ impl<P: Protocol> Module<P> {
             goal: Goal::Read,
             is_met: false,
             reached_ma: 0,
+            step: None,
+            has_left: false,
+            is_impossible: false,
             was_on: None,
             conflict: Conflict::None,
             told,
@@ -181,7 +201,7 @@ impl<P: Protocol> Module<P> {
 
     /// Tests whether it hears what goes to a group. One whose group is not known can be in any.
     pub fn hears(&self, group: u8) -> bool {
-        self.group.map_or(!self.is_assigned, |own| own == group)
+        self.group.map_or(self.placed != Placed::ByProgram, |own| own == group)
     }
 
     /// Returns what is known of its output.
@@ -217,7 +237,10 @@ impl<P: Protocol> Module<P> {
     pub fn answers(&mut self, at: u32) {
         if self.heard.is_none() {
             // What was answered did not read it.
-            (self.reads, self.has_group, self.due) = ([Read::NONE; 3], false, None);
+            (self.reads, self.due) = ([Read::NONE; 3], None);
+            if self.placed == Placed::ByItself {
+                self.placed = Placed::Unknown;
+            }
         }
         self.heard = Some(self.heard.map_or(at, |heard| later_of(heard, at)));
     }
@@ -233,7 +256,8 @@ impl<P: Protocol> Module<P> {
     /// Ends what is asked of it, as it may act by itself. It is not read until it answers.
     pub fn lose<const N: usize, const G: usize>(&mut self, client: &mut Client<P, N, G>) {
         self.end(client);
-        (self.heard, self.was_on, self.due, self.reached_ma) = (None, None, None, 0);
+        (self.heard, self.was_on, self.due) = (None, None, None);
+        self.rise_anew();
         self.conflict = Conflict::None;
     }
 
@@ -253,7 +277,20 @@ impl<P: Protocol> Module<P> {
     /// Notes that it does not deliver. Its current is to rise from zero, so what it was told is too much.
     fn begin_anew(&mut self) {
         self.due = self.due.filter(|_| self.reached_ma == 0);
-        self.reached_ma = 0;
+        self.rise_anew();
+    }
+
+    /// Lets its current rise from zero.
+    pub fn rise_anew(&mut self) {
+        (self.reached_ma, self.step) = (0, None);
+    }
+
+    /// Returns the current to which it may rise, in mA: by a step in each round.
+    pub fn step(&mut self, rise_ma: i32, round: u32, now: u32) -> i32 {
+        let step = self.step.filter(|step| !has_lasted(step.at, round, now));
+        let step = step.unwrap_or(Said { value: self.reached_ma.saturating_add(rise_ma), at: now });
+        self.step = Some(step);
+        step.value.min(self.reached_ma.saturating_add(rise_ma))
     }
 
     /// Forgets values that are so old that their age could not be told any more.
@@ -266,6 +303,8 @@ impl<P: Protocol> Module<P> {
             // It stays old.
             self.said_at = now.wrapping_sub(LONGEST);
         }
+        self.off_since = if is_old(self.off_since) { now.wrapping_sub(LONGEST) } else { self.off_since };
+        self.step = self.step.filter(|step| !is_old(step.at));
     }
 
     /// Returns what has happened that the program was not told.
@@ -320,6 +359,10 @@ impl<P: Quantities> Module<P> {
                 self.reached_ma = point.current_ma.unwrap_or(self.reached_ma);
             }
         }
+        if self.duty.output() == Output::Off {
+            self.has_left = false;
+            self.off_since = if was_off { self.off_since } else { at };
+        }
         let is_on = received.quantity(Quantity::DELIVERING);
         if let Some(is_on) = is_on {
             self.status = Some(Said { value: *received, at });
@@ -334,7 +377,7 @@ impl<P: Quantities> Module<P> {
             };
         }
         self.measured(received, at);
-        if self.duty.output() == Output::Off {
+        if self.duty.output() == Output::Off && !self.is_impossible {
             self.told.unmet = Once::No;
         }
         let resists = was_met && self.goal == Goal::Off && is_on == Some(1);

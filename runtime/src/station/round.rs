@@ -1,10 +1,10 @@
 //! What a station asks in each round.
 
 use super::fit::watchdog;
-use super::module::{Goal, Module, Read, Task};
+use super::module::{Goal, Module, Placed, Read, Task};
 use super::{Event, Found, SetPoint, Settings, Station, request};
 use crate::client::{Full, NotHeld, Output, Pace};
-use crate::clock::{earlier, has_come, has_lasted};
+use crate::clock::{has_come, has_lasted, time_left};
 use crate::{Addressed, Quantities, Received, Request};
 
 /// How far an echo may differ, in thousandths of a unit. Documents print echoes that differ by 15.
@@ -39,6 +39,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         module.once.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
         let Some(module) = self.modules.get(place) else { return Ok(()) };
         let (goal, heard) = (self.goal(module), module.heard);
+        let goal = self.limited(place, goal, now);
         match (self.possible(place, goal, target), heard) {
             (Goal::Leave, _) => {
                 self.modules.get_mut(place).into_iter().for_each(|module| module.end(&mut self.client));
@@ -55,6 +56,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
     /// Returns what a module is to do.
     fn goal(&self, module: &Module<P>) -> Goal {
+        if module.has_left {
+            return Goal::Off;
+        }
         let group = self.groups.iter().find(|group| module.group == Some(group.number));
         let (point, is_on) = match (group.map_or(self.others, |group| group.task), self.settings.found) {
             (Task::Leave, _) => return Goal::Leave,
@@ -64,26 +68,41 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             (Task::AsFound, Found::Adopt(point)) => (point, module.was_on == Some(true)),
             (Task::Deliver(point), _) => (point, true),
         };
-        Goal::Output { point: self.limited(module, point), is_on }
+        Goal::Output { point, is_on }
     }
 
     /// Returns what a module can be asked for. It is off if the document does not allow the output of this round.
     fn possible(&mut self, place: usize, goal: Goal, target: P::Target) -> Goal {
-        let Goal::Output { point, .. } = goal else { return goal };
-        if request::deliver::<P>(&self.settings, target, point).is_ok() {
+        let is_possible = match goal {
+            Goal::Output { point, .. } => request::deliver::<P>(&self.settings, target, point).is_ok(),
+            Goal::Leave | Goal::Read | Goal::Off => true,
+        };
+        let Some(module) = self.modules.get_mut(place) else { return goal };
+        module.is_impossible = !is_possible;
+        if is_possible {
             return goal;
         }
-        self.modules.get_mut(place).into_iter().for_each(|module| module.told.unmet.begin());
+        module.told.unmet.begin();
         Goal::Off
     }
 
-    /// Returns the set-point of this round: it rises by a step, and the group does not exceed its limit.
-    fn limited(&self, module: &Module<P>, point: SetPoint) -> SetPoint {
-        let limits = &self.settings.limits;
-        let members = module.group.map_or(1, |group| self.members(group).count());
+    /// Returns what a module is to do in this round: its current rises by a step, and the group does not exceed its
+    /// limit. While its group is not known, all modules can be in one.
+    fn limited(&mut self, place: usize, goal: Goal, now: u32) -> Goal {
+        let (Goal::Output { point, is_on }, Some(module)) = (goal, self.modules.get(place)) else { return goal };
+        let members = match module.group {
+            Some(group) => self.possible_members(group).count(),
+            None if module.placed == Placed::ByProgram => 1,
+            None => M,
+        };
+        let Settings { limits, round, .. } = self.settings;
         let share = limits.share(i32::try_from(members).unwrap_or(i32::MAX));
-        let step = module.reached_ma.saturating_add(limits.rise_ma);
-        SetPoint { current_ma: point.current_ma.map(|current| current.min(share).min(step)), ..point }
+        let Some(module) = self.modules.get_mut(place) else { return goal };
+        let current_ma = point.current_ma.map(|current| {
+            let current = current.min(share);
+            if current > module.reached_ma { current.min(module.step(limits.rise_ma, round, now)) } else { current }
+        });
+        Goal::Output { point: SetPoint { current_ma, ..point }, is_on }
     }
 
     /// Tells a module that does not answer what it is to do, once. So it does not come back as it was.
@@ -119,7 +138,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     fn read(&mut self, place: usize, target: P::Target, now: u32) -> Result<(), NotHeld> {
         let Settings { pace, round, .. } = self.settings;
         let Some(module) = self.modules.get(place) else { return Ok(()) };
-        let group = request::group::<P>(target).filter(|_| !module.has_group);
+        let group = request::group::<P>(target).filter(|_| module.placed == Placed::Unknown);
         if let Some(request) = group {
             self.has_room()?;
             let once = Pace { tries: 1, ..pace };
@@ -152,7 +171,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if is_new && !is_output {
             module.duty.end(client);
             // What delivers again begins with the first step.
-            module.reached_ma = 0;
+            module.rise_anew();
         }
         if is_new {
             (module.goal, module.is_met) = (Goal::Read, false);
@@ -184,17 +203,14 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             let stale = module.said_at.wrapping_add(settings.valid).wrapping_add(1);
             [module.due, lost, Some(stale).filter(|_| module.output(settings.valid, now) != Output::Unknown)]
         });
-        let latest = now.wrapping_add(settings.round);
-        let times =
-            times.flatten().chain(client).map(|time| if has_come(time, now) { now.wrapping_add(1) } else { time });
-        times.fold(latest, |first, time| if earlier(time, first, now) { time } else { first })
+        let left = times.flatten().chain(client).map(|time| time_left(time, now).max(1)).min();
+        now.wrapping_add(left.map_or(settings.round, |left| left.min(settings.round)))
     }
 
     /// Returns what the program was not told.
     pub(super) fn event(&mut self, now: u32) -> Option<Event> {
         let (news, valid) = (&mut self.news, self.settings.valid);
-        let of_bus = Some(core::mem::take(&mut news.clock_back)).filter(|by| *by > 0).map(|by| Event::ClockBack { by });
-        let of_bus = of_bus.or_else(|| news.rival.take().map(Event::Rival));
+        let of_bus = news.rival.take().map(Event::Rival);
         let of_bus = of_bus.or_else(|| core::mem::take(&mut news.is_kept_on).then_some(Event::KeptOn));
         let of_bus = of_bus.or_else(|| core::mem::take(&mut news.may_wake).then_some(Event::MayWake));
         of_bus.or_else(|| self.modules.iter_mut().find_map(|module| module.news(valid, now)))

@@ -87,8 +87,8 @@ pub struct Limits {
     pub most_mw: i32,
     /// The greatest sum of the currents that are set in a group, in mA.
     pub group_ma: i32,
-    /// How far the current rises from one round to the next, in mA. A module that restarts between two rounds is told its
-    /// last step once more before it says that it is off.
+    /// How far the current rises from one round to the next, in mA, however often the set-point changes. A module that
+    /// restarts between two rounds is told its last step once more before it says that it is off.
     pub rise_ma: i32,
     /// Below this voltage a contactor may open, in mV.
     pub open_mv: i32,
@@ -139,8 +139,14 @@ impl Limits {
         Ok(())
     }
 
+    /// Tests whether something can be set, and no limit contradicts another.
+    pub(super) const fn let_something_be_set(&self) -> bool {
+        let Self { least_mv, most_mv, most_ma, most_mw, group_ma, rise_ma, .. } = *self;
+        least_mv <= most_mv && most_ma > 0 && most_mw > 0 && group_ma > 0 && rise_ma > 0
+    }
+
     /// Returns the current that one of several modules of a group may have.
-    pub fn share(&self, members: i32) -> i32 {
+    pub(super) fn share(&self, members: i32) -> i32 {
         self.group_ma.checked_div(members).unwrap_or(self.group_ma)
     }
 }
@@ -169,10 +175,15 @@ pub enum Unfit {
     Unanswered,
     /// No request reads whether a module delivers. What modules report by themselves shows nothing of what they heard.
     Unread,
+    /// An address or a group is named twice.
+    Twice(u8),
+    /// The limits contradict each other, or let nothing be set: the least voltage is above the greatest, or a current
+    /// or the power is not greater than 0.
+    Limits,
     /// The document does not allow what the station needs.
     Document(Error),
-    /// What it is to adopt is beyond a limit.
-    Beyond(Beyond),
+    /// What it is to adopt would be refused.
+    Adopt(Refused),
 }
 
 impl fmt::Display for Unfit {
@@ -183,8 +194,10 @@ impl fmt::Display for Unfit {
             Self::Address(node) => write!(formatter, "no module is asked by the address {node}"),
             Self::Unanswered => formatter.write_str("no module answers when it is switched off"),
             Self::Unread => formatter.write_str("no request reads whether a module delivers"),
+            Self::Twice(number) => write!(formatter, "{number} is named twice"),
+            Self::Limits => formatter.write_str("the limits contradict each other, or let nothing be set"),
             Self::Document(error) => error.fmt(formatter),
-            Self::Beyond(beyond) => beyond.fmt(formatter),
+            Self::Adopt(refused) => refused.fmt(formatter),
         }
     }
 }
@@ -202,6 +215,10 @@ pub enum Refused {
     Output(Error),
     /// The output is beyond a limit of the program.
     Beyond(Beyond),
+    /// The protocol can set the current, so without one no limit of the program would hold.
+    NoCurrent,
+    /// Nobody answers what sets the output. So nothing would show whether it is in effect.
+    Unanswered,
     /// The module is not known to be off, so it cannot change its group.
     NotOff,
     /// There was an emergency, which the program has not [ended](super::Station::end_emergency).
@@ -215,6 +232,8 @@ impl fmt::Display for Refused {
             Self::Address(node) => write!(formatter, "the station has no module at the address {node}"),
             Self::Output(error) => error.fmt(formatter),
             Self::Beyond(beyond) => beyond.fmt(formatter),
+            Self::NoCurrent => formatter.write_str("the protocol can set the current, so say which one"),
+            Self::Unanswered => formatter.write_str("nobody answers what sets the output"),
             Self::NotOff => formatter.write_str("the module is not known to be off, so stop it first"),
             Self::Emergency => formatter.write_str("there was an emergency, which must be ended first"),
         }

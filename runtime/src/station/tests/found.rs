@@ -43,13 +43,13 @@ fn what_is_adopted_hears_the_set_point_first_and_what_is_on_goes_on_step_by_step
 }
 
 #[test]
-fn what_is_adopted_has_the_current_of_its_group_alone_until_that_is_known() {
+fn what_is_adopted_shares_the_current_of_a_group_with_all_until_its_group_is_known() {
     let limits = Limits { group_ma: 8000, ..LIMITS };
     let mut bus = grouped(Settings { limits, ..settings(Found::Adopt(volts(500, 20))) });
-    bus.charger(1).is_on = true;
+    (bus.charger(1).is_on, bus.charger(2).group) = (true, 2);
     bus.run(3500);
-    assert_eq!(bus.sent()[0], "0: 1 500 V 8 A");
-    assert_eq!(bus.charger(1).set, [5000, 40], "two share it");
+    assert_eq!(bus.sent()[0], "0: 1 500 V 4 A", "both can be in one group");
+    assert_eq!(bus.charger(1).set, [5000, 80], "each has a group of its own");
 }
 
 #[test]

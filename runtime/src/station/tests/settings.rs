@@ -3,7 +3,7 @@
 use super::bus::{LIMITS, PACE, settings, volts};
 use super::chargers::{Apart, AtOnce, InGroups, Message, Mute, Talkative, group};
 use crate::client::Pace;
-use crate::station::{Beyond, Found, Limits, SetPoint, Settings, Station, Unfit};
+use crate::station::{Beyond, Found, Limits, Refused, SetPoint, Settings, Station, Unfit};
 use crate::{Error, Quantity};
 
 /// Returns why there is no station with two modules of two groups.
@@ -28,11 +28,11 @@ fn the_room_holds_what_each_module_reads_and_sets_its_group_and_each_stop() {
 #[test]
 fn a_round_takes_all_requests_of_all_modules_and_the_wait_for_an_answer() {
     let with = |pace, round| unfit(Settings::new(pace, round, Found::Off, LIMITS));
-    // Four requests of two modules, each 20 ms after the other, and a third of 10 s.
-    let quick = Pace { wait: 80, late: 79, ..PACE };
-    assert_eq!(with(quick, 159), Some(Unfit::Round { least: 160, most: 3333 }));
-    assert_eq!([with(quick, 160), with(quick, 3333)], [None, None]);
-    assert_eq!(with(quick, 3334), Some(Unfit::Round { least: 160, most: 3333 }));
+    // Four requests of two modules and two stops, each 20 ms after the other, and a third of 10 s.
+    let quick = Pace { wait: 100, late: 99, ..PACE };
+    assert_eq!(with(quick, 199), Some(Unfit::Round { least: 200, most: 3333 }));
+    assert_eq!([with(quick, 200), with(quick, 3333)], [None, None]);
+    assert_eq!(with(quick, 3334), Some(Unfit::Round { least: 200, most: 3333 }));
     // An answer comes within 200 ms.
     assert_eq!(with(PACE, 200), Some(Unfit::Round { least: 201, most: 3333 }));
     assert_eq!(with(PACE, 201), None);
@@ -82,9 +82,36 @@ fn what_is_adopted_must_be_within_the_limits_and_allowed_by_the_document() {
     let adopt = |point| unfit(settings(Found::Adopt(point)));
     assert_eq!(adopt(volts(800, 20)), None);
     let beyond = Beyond { quantity: Quantity::OUTPUT_VOLTAGE, value: 801_000, limit: 800_000 };
-    assert_eq!(adopt(volts(801, 20)), Some(Unfit::Beyond(beyond)));
-    let refused = adopt(SetPoint { current_ma: None, ..volts(500, 0) });
-    assert!(matches!(refused, Some(Unfit::Document(Error::NotGiven { .. }))), "{refused:?}");
+    assert_eq!(adopt(volts(801, 20)), Some(Unfit::Adopt(Refused::Beyond(beyond))));
+    let without = adopt(SetPoint { current_ma: None, ..volts(500, 0) });
+    assert_eq!(without, Some(Unfit::Adopt(Refused::NoCurrent)));
+    // The document has currents from 1 A.
+    let refused = adopt(SetPoint { current_ma: Some(900), ..volts(500, 0) });
+    assert!(matches!(refused, Some(Unfit::Adopt(Refused::Output(Error::Value { .. })))), "{refused:?}");
+}
+
+#[test]
+fn an_address_or_a_group_that_is_named_twice_has_no_station() {
+    let named = |addresses, groups: [u8; 2]| {
+        let groups = groups.map(|number| (number, Some(group(1))));
+        Station::<Message<InGroups>, 2, 2, 14>::new(settings(Found::Off), addresses, groups).err()
+    };
+    assert_eq!([named([3, 3], [1, 2]), named([1, 2], [2, 2])], [Some(Unfit::Twice(3)), Some(Unfit::Twice(2))]);
+    assert_eq!(named([1, 2], [1, 2]), None, "a module and a group may have one number");
+}
+
+#[test]
+fn limits_that_let_nothing_be_set_have_no_station() {
+    let with = |limits| unfit(Settings { limits, ..settings(Found::Off) });
+    let limits = [
+        Limits { most_mv: 59_999, ..LIMITS },
+        Limits { most_ma: 0, ..LIMITS },
+        Limits { most_mw: 0, ..LIMITS },
+        Limits { group_ma: 0, ..LIMITS },
+        Limits { rise_ma: 0, ..LIMITS },
+    ];
+    assert_eq!(limits.map(with), [Some(Unfit::Limits); 5]);
+    assert_eq!(with(Limits { most_mv: 60_000, most_ma: 1, most_mw: 1, group_ma: 1, rise_ma: 1, ..LIMITS }), None);
 }
 
 #[test]

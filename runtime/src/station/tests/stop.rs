@@ -1,10 +1,10 @@
 //! Stops, emergencies, and what is off.
 
-use super::bus::{Grouped, LIMITS, PACE, grouped, lone, settings, volts};
-use super::chargers::{At, InGroups, Message};
+use super::bus::{Bus, Grouped, grouped, lone, settings, volts};
+use super::chargers::{Apart, At, InGroups, Message, group};
 use super::deliver::{deliver, known};
 use crate::client::Output;
-use crate::station::{Event, Found, Known, Refused, SetPoint, Settings};
+use crate::station::{Event, Found, Known, Refused, SetPoint, Station};
 use crate::{Addressed, Quantities, Quantity};
 
 /// Returns a bus whose modules deliver, at 4400 ms.
@@ -153,21 +153,24 @@ fn an_emergency_stops_all_and_goes_on_until_the_program_lets_groups_deliver() {
     let mut bus = delivering();
     bus.charger(2).group = 7;
     bus.run(6400);
+    bus.charger(2).is_on = true;
+    bus.run(7400);
     assert!(bus.charger(2).is_on, "no task of the station is that of group 7, so it is only read");
+    bus.run(7600);
     bus.forget();
     bus.station.emergency(bus.clock());
-    bus.run(7700);
+    bus.run(8700);
     let sent = bus.sent();
     // Nobody is in group 2.
-    assert_eq!(sent[..3], ["6400: 2 off", "6420: all of 1 off", "6440: 1 off"], "{sent:?}");
+    assert_eq!(sent[..3], ["7600: all of 1 off", "7620: 2 off", "7640: 1 off"], "{sent:?}");
     assert!(sent.iter().all(|text| !text.contains("all of 2")));
     assert!(bus.chargers.iter().all(|charger| !charger.is_on));
     assert_eq!(bus.station.deliver(1, volts(500, 10), bus.clock()), Err(Refused::Emergency));
     assert_eq!(bus.station.watch(1, bus.clock()), Err(Refused::Emergency));
     bus.station.end_emergency();
-    bus.run(8400);
+    bus.run(9400);
     assert!(bus.chargers.iter().all(|charger| !charger.is_on));
-    deliver(&mut bus, volts(500, 10), 9400);
+    deliver(&mut bus, volts(500, 10), 10_400);
     assert_eq!([1, 2].map(|node| bus.charger(node).is_on), [true, false]);
 }
 
@@ -184,11 +187,11 @@ fn a_module_is_moved_only_while_it_is_off_or_does_not_answer() {
     assert_eq!([Some(2), None].map(|group| bus.station.assign(1, group, 3500)), [Err(Refused::NotOff); 2]);
     assert_eq!((bus.station.assign(1, Some(1), 3500), bus.station.output(1, 3500)), (Ok(()), Output::On));
     bus.station.stop(1, 3500).expect("there is such a group");
-    bus.run(5500);
-    assert_eq!((bus.station.assign(1, Some(2), 5500), bus.station.group(1)), (Ok(()), Some(2)));
-    assert_eq!(bus.station.output(1, 5500), Output::Unknown, "it is told anew");
-    bus.run(5510);
-    assert_eq!(bus.told("1").last().map(|text| &text[..4]), Some("5500"), "at once");
+    bus.run(5600);
+    assert_eq!((bus.station.assign(1, Some(2), 5600), bus.station.group(1)), (Ok(()), Some(2)));
+    assert_eq!(bus.station.output(1, 5600), Output::Unknown, "it is told anew");
+    bus.run(5610);
+    assert_eq!(bus.told("1").last().map(|text| &text[..4]), Some("5600"), "at once");
     bus.run(7500);
     assert_eq!((bus.station.assign(1, None, 7500), bus.station.group(1)), (Ok(()), None));
     bus.station.assign(1, Some(1), 7500).expect("it is in no group");
@@ -226,10 +229,95 @@ fn a_watched_group_stays_as_it_is_and_reads_can_wake_it() {
 
 #[test]
 fn a_module_is_off_only_while_it_says_so() {
-    let mut bus = known(Settings { limits: LIMITS, pace: PACE, ..settings(Found::Off) });
+    let mut bus = known(settings(Found::Off));
     bus.charger(1).refuses = Some((8, 2));
     // It was read at 1010 for the last time.
     bus.run(6000);
     assert_eq!(bus.events(), [(1010 + 3001, Event::Output { node: 1, output: Output::Unknown })]);
-    let _ = grouped(settings(Found::Off));
+}
+
+#[test]
+fn a_module_that_delivers_and_trips_is_not_off_since_it_is_switched_on_again() {
+    let mut bus = delivering();
+    bus.charger(2).is_there = false;
+    bus.charger(1).ignores = Some(2);
+    bus.charger(1).is_on = false;
+    bus.run(6400);
+    assert_eq!(bus.station.output(1, bus.clock()), Output::Off, "it says so");
+    assert!(!bus.station.is_off(1, bus.clock()));
+    // What it said before it is stopped does not show that it was stopped.
+    bus.station.stop(1, bus.clock()).expect("there is such a group");
+    assert!(!bus.station.is_off(1, bus.clock()) && !bus.station.is_safe_to_open(1, bus.clock()));
+}
+
+#[test]
+fn a_group_that_is_to_deliver_is_not_off_before_anything_is_sent() {
+    let mut bus = known(settings(Found::Off));
+    bus.run(3500);
+    assert!(bus.station.is_safe_to_open(1, bus.clock()));
+    bus.station.deliver(1, volts(500, 10), bus.clock()).expect("it is allowed");
+    assert!(!bus.station.is_off(1, bus.clock()) && !bus.station.is_safe_to_open(1, bus.clock()));
+}
+
+#[test]
+fn a_voltage_that_was_low_before_an_output_delivered_lets_no_contactor_open() {
+    let mut bus = known(settings(Found::Off));
+    bus.run(3500);
+    // From now on the voltage is not read, and 0 V count until 6030 or so.
+    bus.chargers.iter_mut().for_each(|charger| charger.refuses = Some((9, 2)));
+    deliver(&mut bus, volts(500, 10), 3700);
+    assert!(bus.charger(1).is_on && bus.charger(2).is_on);
+    bus.station.stop(1, bus.clock()).expect("there is such a group");
+    bus.run(5500);
+    assert!(bus.station.is_off(1, bus.clock()));
+    assert_eq!(bus.station.voltage_mv(1, bus.clock()), Known::Fresh(0), "it was measured before");
+    assert!(!bus.station.is_safe_to_open(1, bus.clock()));
+    bus.chargers.iter_mut().for_each(|charger| charger.refuses = None);
+    bus.run(7500);
+    assert!(bus.station.is_safe_to_open(1, bus.clock()));
+}
+
+#[test]
+fn a_module_whose_group_is_not_known_can_be_in_each() {
+    let mut bus = Bus::<Apart, 2, 1, 15>::of(Station::new(settings(Found::Off), [1, 2], [(1, Some(group(1)))]), [1, 2]);
+    bus.charger(2).refuses = Some((7, 2));
+    bus.charger(2).ignores = Some(2);
+    bus.charger(2).is_on = true;
+    bus.run(4500);
+    assert_eq!(bus.station.output(1, bus.clock()), Output::Off);
+    assert!(!bus.station.is_off(1, bus.clock()) && !bus.station.is_safe_to_open(1, bus.clock()));
+    // The program knows that it is in none.
+    bus.charger(2).ignores = None;
+    bus.run(8500);
+    assert!(bus.station.is_off(1, bus.clock()));
+    bus.station.assign(2, None, bus.clock()).expect("it is off");
+    bus.run(10_500);
+    assert!(bus.station.is_off(1, bus.clock()));
+}
+
+#[test]
+fn an_emergency_stops_at_once_what_is_in_no_group() {
+    let mut bus = lone(settings(Found::Watch));
+    bus.charger(1).is_on = true;
+    for group in [1, 2] {
+        bus.station.stop(group, 0).expect("there is such a group");
+    }
+    bus.station.assign(1, None, 0).expect("it does not answer");
+    bus.run(1300);
+    assert!(bus.charger(1).is_on, "it is only watched");
+    bus.station.emergency(bus.clock());
+    bus.run(1400);
+    assert!(!bus.charger(1).is_on);
+}
+
+#[test]
+fn a_module_that_leaves_a_group_that_delivers_is_switched_off() {
+    let mut bus = delivering();
+    bus.charger(2).group = 7;
+    bus.run(7400);
+    assert_eq!([1, 2].map(|node| bus.charger(node).is_on), [true, false], "nobody would stop it otherwise");
+    assert_eq!(bus.station.output(2, bus.clock()), Output::Off);
+    bus.forget();
+    bus.run(9400);
+    assert!(bus.told("2").is_empty(), "it is another's now, and only watched");
 }
