@@ -9,16 +9,9 @@ use indexmap::IndexMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::nearest;
-use crate::rule::{Rule, rules};
+use crate::source::rules::BASED_ON;
 use crate::source::{SIZE_LIMIT, Source};
 use crate::syntax;
-
-rules! {
-    BASED_ON "based_on" Source ERROR;
-}
-
-/// The rules of bases, in order.
-pub(crate) static RULES: &[&Rule] = &[&BASED_ON];
 
 /// Most specs that stand behind a spec, each the base of the one before.
 const MOST: usize = 4;

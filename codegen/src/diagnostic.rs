@@ -10,12 +10,12 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use crate::lines::Source;
 use crate::rule::Rule;
 pub use crate::rule::Severity;
-use crate::source::Source;
-pub use crate::syntax::tree::At;
-use crate::syntax::tree::{Node, Path};
 use crate::text::Text;
+pub use crate::tree::At;
+use crate::tree::{Node, Path};
 
 /// Most errors, and most warnings, that the later stages report of one spec.
 const MOST: usize = 1000;

@@ -1,23 +1,30 @@
 //! The interpreter decodes and encodes by the model, at run time.
 
 mod arrays;
+mod assembled;
 mod assembly;
 mod content;
+mod continuation;
 mod decode;
 mod device;
 mod encode;
+mod fit;
 mod given;
 mod long;
-pub(crate) mod notes;
+mod notes;
+mod oddities;
+mod refusal;
 mod request;
 mod transfer;
 mod value;
 
-pub use assembly::{Assembled, Assembly, Taken};
+pub use assembled::{Assembled, Taken};
+pub use assembly::Assembly;
 pub(crate) use decode::failed_tests;
 pub use decode::{Recognised, decode, recognise};
 pub use device::{Sent, module, sent};
 pub use encode::{encode, encode_long};
+pub(crate) use oddities::signal_note;
 pub use request::{Target, Targets, accesses, request, requests, source, targets};
 pub use value::{Limits, physical, raw_of};
 
@@ -49,6 +56,11 @@ impl Frame {
     pub fn padded(&self) -> [u8; 8] {
         padded(&self.data)
     }
+}
+
+/// Returns a data frame.
+fn frame(protocol: &Protocol, id: u32, data: Vec<u8>) -> Frame {
+    Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
 }
 
 /// Writes a data frame as documents print it: `ID#DATA`.

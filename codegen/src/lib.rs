@@ -16,6 +16,7 @@ mod encoding;
 pub mod files;
 mod hex;
 pub mod interpret;
+mod lines;
 mod lint;
 mod misplaced;
 pub mod model;
@@ -31,6 +32,7 @@ pub mod source;
 mod summary;
 pub mod syntax;
 pub mod text;
+pub mod tree;
 mod words;
 
 pub use bases::Bases;

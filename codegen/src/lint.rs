@@ -12,7 +12,7 @@ mod uneven;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::rule::Rule;
-use crate::syntax::tree::Node;
+use crate::tree::Node;
 use table::Table;
 
 /// A spec as it is written.

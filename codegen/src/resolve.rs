@@ -12,8 +12,10 @@ mod encodings;
 mod examples;
 mod fields;
 mod format;
+mod head;
 mod identifier;
 mod keys;
+mod leaves;
 mod lengths;
 mod long;
 mod messages;
@@ -36,6 +38,7 @@ mod timing;
 mod transports;
 mod types;
 mod units;
+mod window;
 
 use std::collections::{HashMap, HashSet};
 
@@ -48,8 +51,8 @@ use crate::model::{
 };
 use crate::rule::Rule;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 /// Resolves a spec. `file` is its name without folders, and `rules` are the rules that it can
 /// allow.

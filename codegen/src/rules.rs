@@ -4,11 +4,11 @@ use std::sync::LazyLock;
 
 use crate::model::NoteRule;
 pub use crate::rule::{Rule, Stage};
-use crate::{bases, check, lint, resolve, source, syntax};
+use crate::{check, lint, resolve, source, syntax};
 
 /// Every rule, in the order of the stages, and within a stage in the order of application.
 pub static RULES: LazyLock<Vec<&'static Rule>> = LazyLock::new(|| {
-    let read = [source::rules::RULES, bases::RULES, syntax::rules::RULES].concat();
+    let read = [source::rules::RULES, syntax::rules::RULES].concat();
     let lint = lint::RULES.iter().map(|(rule, _)| *rule);
     let resolve = resolve::rules::RULES.iter().copied();
     let check = check::RULES.iter().map(|(rule, _)| *rule);

@@ -1,7 +1,6 @@
 //! Turns bytes into text, and tests size, encoding and characters.
 
 pub(crate) mod rules;
-pub(crate) mod text;
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -9,11 +8,10 @@ use std::ops::Range;
 use std::path::Path;
 use std::string::FromUtf8Error;
 
-pub(crate) use text::visible;
-pub use text::{Source, forbidden};
-
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use text::BYTE_ORDER_MARK;
+pub use crate::lines::Source;
+use crate::text::BYTE_ORDER_MARK;
+pub use crate::text::forbidden;
 
 /// Largest spec file that is read, in bytes.
 pub const SIZE_LIMIT: usize = 4 << 20;

@@ -5,12 +5,12 @@ mod gate;
 mod merge;
 mod reader;
 pub(crate) mod rules;
-pub mod tree;
 
 use std::ops::Range;
 
 use crate::diagnostic::Diagnostics;
 use crate::source::Source;
+pub use crate::tree;
 
 /// Reads a spec, joins it with those that it is based on, and reports every mistake in its syntax
 /// at once. It returns no spec if there is a mistake.

@@ -5,13 +5,14 @@
 mod dbc;
 mod lua;
 mod rust_doc;
+mod visible;
 
 use serde::{Deserialize, Serialize};
 
 pub(crate) use lua::quoted as quoted_in_lua;
 pub(crate) use rust_doc::code;
-
-use crate::source::visible;
+pub use visible::forbidden;
+pub(crate) use visible::{BYTE_ORDER_MARK, visible};
 
 /// A text of one line, without characters that act on a terminal, reverse its direction or cannot be seen.
 ///

@@ -5,7 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::diagnostic::{Diagnostics, Located};
-use crate::source::visible;
+use crate::text::visible;
 
 /// Asks to run the build script again when one of the paths or its content changes.
 ///

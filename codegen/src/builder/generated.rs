@@ -9,7 +9,7 @@ use crate::emit::{self, Options};
 use crate::files::File;
 use crate::model::Protocol;
 use crate::source::Source;
-use crate::syntax::tree;
+use crate::tree;
 use crate::{Outcome, check, compile};
 
 /// Rust that was generated from one spec.

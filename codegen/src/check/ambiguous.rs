@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Message, Protocol, SelectorId};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     AMBIGUOUS "ambiguous" Check ERROR;

@@ -9,7 +9,7 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::hex;
 use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Message, Mode, Protocol, Way};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     DIRECTION "direction" Check ERROR;

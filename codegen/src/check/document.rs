@@ -3,8 +3,8 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
 use crate::rule::rules;
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 rules! {
     DOCUMENT "document" Check EITHER;

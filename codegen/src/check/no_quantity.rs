@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Message, Protocol, Signal, Unit};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     NO_QUANTITY "no_quantity" Check WARNING;

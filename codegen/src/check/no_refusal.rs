@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{ExchangeId, Kind, Message, Protocol};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     NO_REFUSAL "no_refusal" Check WARNING;

@@ -5,7 +5,7 @@ use canspec_runtime::Place;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Message, Protocol, Selector, SelectorPlace, Signal};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     OUTSIDE_FRAME "outside_frame" Check ERROR;

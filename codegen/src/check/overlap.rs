@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, FrameLayout, Message, Protocol, SelectorPlace, Signal};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     OVERLAP "overlap" Check ERROR;

@@ -5,12 +5,12 @@ use canspec_runtime::{Place, Quantity, QuantityKind};
 use super::ambiguous::are_alike;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::Reading;
-use crate::interpret::notes::signal_note;
+use crate::interpret::signal_note;
 use crate::model::{
     Encoding, FieldPath, Fixed, FrameLayout, MessageId, Protocol, QuantityPaths, Signal, SignalId, SignalPath, Unit,
 };
 use crate::resolve::rules::QUANTITY_PATH;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for known in &protocol.quantities {

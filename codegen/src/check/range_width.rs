@@ -5,7 +5,7 @@ use crate::encoding::about_offset;
 use crate::model::{Message, Protocol, Range, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     RANGE_WIDTH "range_width" Check ERROR;

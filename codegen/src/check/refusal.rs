@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Constant, FrameLayout, Kind, Message, Protocol};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     REFUSAL "refusal" Check ERROR;

@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{Scaled, camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Id, ModelId, Protocol};
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     RUST_NAME "rust_name" Check ERROR;

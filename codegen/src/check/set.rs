@@ -5,7 +5,7 @@ use crate::model::{
     Access, Constant, Exchange, FrameLayout, IdentifierField, Kind, Message, MessageId, Protocol, SelectorPlace, Set,
 };
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Largest number of members in a set: one for each bit of an integer of 64 bits.
 const MOST: usize = 64;

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::rule::rules;
 use crate::syntax::ast::Allowance;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 rules! {
     STALE_ALLOWANCE "stale_allowance" Check WARNING;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::encode::{refuse, twice};
+use super::refusal::{refuse, twice};
 use super::{Content, Refusal};
 use crate::model::{Array, Message};
 

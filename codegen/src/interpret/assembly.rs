@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use begun::{Begun, Link};
 
+use super::assembled::{Assembled, Peers, Taken, module};
 use super::long::{Joined, in_bytes};
 use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
-    AddressTypeId, Kind, LongMessage, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved, SelectorPlace, Side,
-    SignalId,
+    Kind, LongMessage, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved, SelectorPlace, Side, SignalId,
 };
 
 /// The parts that came so far. `M` is what the caller remembers of each frame.
@@ -37,9 +37,6 @@ impl<M> Default for Assembly<M> {
     }
 }
 
-/// The addresses of the two sides, in the order of their kinds.
-pub type Peers = Vec<(AddressTypeId, i64)>;
-
 /// The parts of one message, up to now.
 #[derive(Clone, Debug, PartialEq)]
 struct Transfer<M> {
@@ -57,39 +54,6 @@ struct Transfer<M> {
     /// The last frame.
     frame: Frame,
     decoded: Decoded,
-}
-
-/// What became of a frame.
-#[derive(Clone, Debug)]
-pub struct Taken<M> {
-    /// Whether the frame carries a part that was kept, or repeats the one before.
-    pub is_part: bool,
-    /// The messages that ended.
-    pub ended: Vec<Assembled<M>>,
-}
-
-impl<M> Taken<M> {
-    /// What becomes of a frame that changes nothing.
-    pub(super) const NOTHING: Self = Self { is_part: false, ended: Vec::new() };
-}
-
-/// A long message, or what came of it.
-#[derive(Clone, Debug)]
-pub struct Assembled<M> {
-    /// What the caller remembers of the frames, in order.
-    pub marks: Vec<M>,
-    /// The last frame.
-    pub frame: Frame,
-    /// The values. Their signals are those of the long message.
-    pub decoded: Decoded,
-    /// The joined data, if no part is missing.
-    pub data: Option<Vec<u8>>,
-    /// Bits that no signal covers, first byte first.
-    pub reserved: Vec<u8>,
-    /// The name of what tells a message in parts from the next one, and its value.
-    pub counter: Option<(String, u64)>,
-    /// What is missing, in one sentence without a full stop.
-    pub incomplete: Option<String>,
 }
 
 /// A part of a message.
@@ -408,12 +372,6 @@ fn filling_note(long: &LongMessage, rest: &[u8]) -> Option<Note> {
     let is_odd = !are_free && rest.iter().any(|byte| *byte != fill);
     let text = || format!("bytes behind the end of the message are not all 0x{fill:02X}");
     is_odd.then(|| Note { rule: NoteRule::ReservedBit, text: text() })
-}
-
-/// Returns those addresses that are not sent by everybody.
-pub(super) fn module(protocol: &Protocol, peers: &Peers) -> Peers {
-    let own = peers.iter().filter(|(kind, _)| protocol[*kind].send.is_none());
-    own.copied().collect()
 }
 
 fn nanoseconds(time: Duration) -> Option<u64> {

@@ -2,12 +2,13 @@
 
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
-use super::encode::{find_message, frame, refuse};
+use super::encode::find_message;
 use super::given::Given;
 use super::long::{typed, typed_frames};
+use super::refusal::refuse;
 use super::request::{Target, address, length_typed, put_signals, raw_address, written_address};
 use super::transfer::frames;
-use super::{Frame, Limits, Refusal, decode};
+use super::{Frame, Limits, Refusal, decode, frame};
 use crate::model::{
     AddressPattern, AddressType, FrameLayout, Kind, Message, Mode, ModelId, Protocol, SelectorPlace, Side,
 };

@@ -1,10 +1,10 @@
 //! Encodes a message with its values to a frame.
 
-use std::collections::HashSet;
-
+use super::continuation::continue_all_but_last;
 use super::decode::transported;
+use super::refusal::{not_of, refuse};
 use super::value::{Limits, raw_of};
-use super::{Content, Decoded, Form, Frame, Input, Refusal, arrays, decode, long, padded, transfer};
+use super::{Content, Decoded, Frame, Input, Refusal, arrays, decode, frame, long, padded, transfer};
 use crate::model::{
     Carrier, FrameLayout, LongMessage, Message, MessageId, ModelId, NoteRule, Parts, Protocol, SelectorPlace, Signal,
     Transport,
@@ -113,31 +113,6 @@ fn encode_transfer(
     transfer::frames(protocol, transport, (layout, id), &data)
 }
 
-/// Makes all frames but the last say that more follow.
-pub fn continue_all_but_last(protocol: &Protocol, frames: &mut [Frame]) {
-    if let Some((_, others)) = frames.split_last_mut() {
-        for frame in others {
-            continue_after(protocol, frame);
-        }
-    }
-}
-
-/// Makes a frame say that more follow.
-fn continue_after(protocol: &Protocol, frame: &mut Frame) {
-    let Some(continuation) = protocol.continuation() else { return };
-    match continuation.place {
-        SelectorPlace::Identifier(field) => {
-            let raw = u32::try_from(continuation.raw).unwrap_or(0);
-            frame.id = protocol[field].put(frame.id, raw);
-        }
-        SelectorPlace::Payload(place) => {
-            let mut data = frame.padded();
-            place.put(&mut data, continuation.raw);
-            frame.data = data.into_iter().take(frame.data.len()).collect();
-        }
-    }
-}
-
 /// Finds a message by name.
 pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<(MessageId, &'a Message), Refusal> {
     protocol.messages.entries().find(|(_, message)| message.name == name).ok_or_else(|| {
@@ -145,20 +120,6 @@ pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<(MessageId
         let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         Refusal(format!("`{}` has no message `{name}`{hint}", protocol.name))
     })
-}
-
-pub fn refuse(message: &Message, why: &str) -> Refusal {
-    Refusal(format!("{}: {why}", message.name))
-}
-
-/// Refuses a message that a device model does not have.
-pub fn not_of(protocol: &Protocol, message: &Message, model: ModelId) -> Refusal {
-    refuse(message, &format!("{} has no such message", protocol[model].name))
-}
-
-/// Returns a data frame.
-pub fn frame(protocol: &Protocol, id: u32, data: Vec<u8>) -> Frame {
-    Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
 }
 
 /// Returns how many data bytes a frame has if it carries some of its signals.
@@ -297,12 +258,6 @@ fn put_signals(
         signal.place.put(data, bits);
     }
     Ok(())
-}
-
-/// Returns a name that is given twice.
-pub fn twice<T>(given: &[(String, T)]) -> Option<&str> {
-    let mut known = HashSet::new();
-    given.iter().map(|(name, _)| name.as_str()).find(|name| !known.insert(*name))
 }
 
 fn put_reserved(

@@ -3,7 +3,7 @@
 use canspec_runtime::Place;
 
 use super::Refusal;
-use super::encode::{refuse, twice};
+use super::refusal::{refuse, twice};
 use crate::model::{
     AddressPattern, EnumerationId, FieldId, FrameLayout, IdentifierField, Message, Protocol, Selector, SelectorId,
     SelectorPlace,

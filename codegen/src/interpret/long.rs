@@ -4,8 +4,9 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::arrays::parted_texts;
-use super::encode::{continue_all_but_last, refuse, twice};
-use super::notes::signal_note;
+use super::continuation::continue_all_but_last;
+use super::oddities::signal_note;
+use super::refusal::{refuse, twice};
 use super::value::{Limits, bytes_of, raw_of};
 use super::{Frame, Input, Note, Reading, Refusal};
 use crate::hex;

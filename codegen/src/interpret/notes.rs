@@ -1,14 +1,9 @@
 //! What a decoded frame has that its document does not expect.
 
-use std::fmt::Display;
-
-use super::decode::{Addressing, Candidate, Decoder, Fit};
-use super::{Note, Reading, Value, hexadecimal, hexadecimal_ranges};
-use crate::encoding::Words;
+use super::fit::{Addressing, Candidate, Decoder, Fit};
+use super::{Note, hexadecimal, hexadecimal_ranges};
 use crate::hex;
-use crate::model::{
-    FrameId, FrameLayout, Message, ModelId, NoteRule, Protocol, Range, SelectorId, Signal, first_bytes,
-};
+use crate::model::{FrameId, FrameLayout, Message, NoteRule, SelectorId, first_bytes};
 
 impl<'a> Decoder<'a, '_> {
     /// Says that the number of a part means nothing without the device model.
@@ -107,42 +102,4 @@ impl<'a> Decoder<'a, '_> {
             }
         }
     }
-}
-
-pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
-    let signal = message[reading.signal].on(model);
-    let lack = |model| reading.words(signal).find_map(|bits| protocol.lack(message, signal, model, bits));
-    if let Some(text) = model.and_then(lack) {
-        return Some(Note { rule: NoteRule::ModelDependent, text });
-    }
-    if let Some(model) = model.filter(|model| !signal.is_of(*model)) {
-        return message.is_optional(signal).then(|| longer_note(protocol, signal, model));
-    }
-    let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
-    if let Some((rule, text)) = oddity {
-        return Some(Note { rule, text });
-    }
-    match &reading.value {
-        Value::Integer(value) => range_note(signal, model, value, |range| range.has_whole(*value)),
-        Value::Number(value) => range_note(signal, model, value, |range| signal.is_within(range, *value)),
-        Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => None,
-    }
-}
-
-/// Says that a frame is long enough for a signal that the device model does not have.
-fn longer_note(protocol: &Protocol, signal: &Signal, model: ModelId) -> Note {
-    let text = format!("{} has no `{}`, for which the frame is long enough", protocol[model].name, signal.name);
-    Note { rule: NoteRule::ModelDependent, text }
-}
-
-fn range_note(
-    signal: &Signal,
-    model: Option<ModelId>,
-    shown: impl Display,
-    is_inside: impl FnOnce(&Range) -> bool,
-) -> Option<Note> {
-    let range = signal.range_for(model).filter(|range| !is_inside(range))?;
-    let unit = signal.unit_text();
-    let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
-    Some(Note { rule: NoteRule::OutOfRange, text })
 }

@@ -2,11 +2,13 @@
 
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
-use super::encode::{confirm, continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
+use super::continuation::continue_all_but_last;
+use super::encode::{confirm, find_message, length_with};
 use super::given::Given;
+use super::refusal::{not_of, refuse, twice};
 use super::transfer::frames;
 use super::value::{Limits, raw_of, typed};
-use super::{Frame, Input, Refusal, decode};
+use super::{Frame, Input, Refusal, decode, frame};
 use crate::model::{
     AddressPattern, AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set, Signal,
 };

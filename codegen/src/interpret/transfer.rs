@@ -3,11 +3,10 @@
 mod isotp;
 mod j1939;
 
-use super::assembly::{Assembled, Taken};
+use super::assembled::{Assembled, Taken};
 use super::decode::transported;
-use super::encode::frame;
 use super::long::{Joined, in_bytes};
-use super::{Decoded, Frame, Note, Refusal};
+use super::{Decoded, Frame, Note, Refusal, frame};
 use crate::model::{
     FrameLayout, LongMessage, LongMessageId, ModelId, Protocol, Standard, Transport, TransportFrame, TransportId,
 };

@@ -3,7 +3,7 @@
 use super::Written;
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::{Content, Node, Path};
+use crate::tree::{Content, Node, Path};
 
 rules! {
     COMMENT "comment" Lint WARNING;

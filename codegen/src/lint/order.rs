@@ -7,7 +7,7 @@ use super::table::Table;
 use crate::diagnostic::{At, Diagnostic};
 use crate::number::Rational;
 use crate::rule::rules;
-use crate::syntax::tree::{Node, Path};
+use crate::tree::{Node, Path};
 
 rules! {
     ORDER "order" Lint WARNING;

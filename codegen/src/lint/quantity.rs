@@ -7,7 +7,7 @@ use super::table::Table;
 use crate::diagnostic::Diagnostic;
 use crate::model::Unit;
 use crate::rule::rules;
-use crate::syntax::tree::{Node, Path};
+use crate::tree::{Node, Path};
 use phrase::{Reading, read};
 
 rules! {

@@ -11,7 +11,7 @@ use super::Written;
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::{Node, Path};
+use crate::tree::{Node, Path};
 use words::{Vocabulary, words};
 
 rules! {

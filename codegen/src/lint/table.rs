@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 
 use crate::diagnostic::At;
-use crate::syntax::tree::{Content, Entry, NAMING, Node, Path};
+use crate::tree::{Content, Entry, NAMING, Node, Path};
 
 /// Keys of the language whose maps use names that are given elsewhere.
 const REFERENCES: [&str; 10] =

@@ -6,7 +6,7 @@ use super::Written;
 use super::table::Table;
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::{Entry, Path};
+use crate::tree::{Entry, Path};
 
 rules! {
     UNEVEN "uneven" Lint WARNING;

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{Quantity, Range, Side, Unit};
 use crate::number::Rational;
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 /// What the two sides are called in texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,8 +6,8 @@ use canspec_runtime::Place;
 
 use crate::model::{DeviceModel, Doc, Element, Encoding, Kind, Limit, ModelId, Table, Unit, only, place};
 use crate::number::Rational;
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 /// Named values of a signal.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use super::types::Merged;
 use crate::model::{NamedValue, Numeral};
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::ABSENT;
 
 /// The name of that raw value.

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Side, Table, Timing, TimingId, Who};
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::{ANSWERS, SIDES};
 
 /// The addressing modes.

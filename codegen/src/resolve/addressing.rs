@@ -11,7 +11,7 @@ use crate::model::{
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Pattern};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::OUTSIDE;
 
 /// The kinds of addresses.

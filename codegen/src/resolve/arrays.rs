@@ -6,24 +6,21 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
-use super::fields::Leaves;
-use super::long::MOST_BYTES;
+use super::leaves::Leaves;
 use super::types::Merged;
+use super::window::{MOST_BYTES, Windowed};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Array, ArrayId, Doc, Element, Signal, SignalId, Table};
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 /// Most elements of an array in a frame. A status word has room for more bits.
 const MOST_ELEMENTS: u16 = 32;
 
 /// Most elements of an array in a long message.
 const MOST_LONG_ELEMENTS: u16 = 256;
-
-/// A place, and how many bytes of a long message come before its window.
-pub type Windowed = (u16, Place);
 
 /// How many equal fields stand in a row, and where.
 #[derive(Clone, Copy)]

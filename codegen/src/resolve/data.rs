@@ -7,8 +7,8 @@ use crate::model::{DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quant
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key};
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 use crate::words::ERRATUM_KINDS;
 
 /// The version of the spec language.

@@ -8,7 +8,7 @@ use crate::model::{Doc, Encoding, Numeral, TextForm};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::{NUMBER_FORMATS, NumberFormat};
 
 impl Resolver<'_> {

@@ -4,9 +4,9 @@ use canspec_runtime::Place;
 use indexmap::IndexSet;
 
 use super::Resolver;
-use super::long::MOST_BYTES;
 use super::printed::Printed;
 use super::texts::{remarks, suggestion};
+use super::window::MOST_BYTES;
 use crate::diagnostic::Diagnostic;
 use crate::encoding::said;
 use crate::hex;
@@ -16,7 +16,7 @@ use crate::model::{
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
-use crate::syntax::tree::{Node, Path};
+use crate::tree::{Node, Path};
 use crate::words::ORIGINS;
 
 /// The messages of the protocol.

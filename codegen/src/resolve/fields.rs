@@ -2,42 +2,22 @@
 //! signals and constants of the rest.
 
 use super::Resolver;
-use super::arrays::{Row, Windowed};
+use super::arrays::Row;
 use super::keys::{Role, Site};
+use super::leaves::Leaves;
 use super::parts::{COUNTER, DATA, LENGTH, PART};
 use super::runs::is_run;
 use super::texts::{self, remarks};
 use super::types::Merged;
+use super::window::Windowed;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Array, ArrayId, ByteRun, Doc, Encoding, Kind, PartId, Signal, Table};
+use crate::model::{ByteRun, Doc, Encoding, Kind, PartId, Signal, Table};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key, PartData};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Largest number of fields of a message, counting those of words, packed values and their types.
 const FIELD_LIMIT: usize = 256;
-
-/// The result of resolving the fields of a message.
-#[derive(Default)]
-pub struct Leaves {
-    pub signals: Vec<Signal>,
-    /// Arrays without their elements, which are signals.
-    pub arrays: Table<ArrayId, Array>,
-    /// Constant fields of the payload and their values.
-    pub constants: Vec<(Signal, u64)>,
-    /// Constants that a reply shows because of the fields, each with its place in the spec.
-    pub replies: Vec<(Path, ast::Pattern)>,
-    /// Names of fields with an error of their own.
-    pub given_up: Vec<String>,
-}
-
-impl Leaves {
-    /// Returns the names of all fields, also of those with an error.
-    pub fn names(self) -> impl Iterator<Item = String> {
-        let constants = self.constants.into_iter().map(|(signal, _)| signal);
-        self.signals.into_iter().chain(constants).map(|signal| signal.name).chain(self.given_up)
-    }
-}
 
 /// What is around a field.
 #[derive(Clone, Copy)]

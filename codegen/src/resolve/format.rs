@@ -5,7 +5,7 @@ use canspec_runtime::Place;
 use super::{Resolver, rules};
 use crate::diagnostic::Diagnostic;
 use crate::model::{PartId, Piece, Signal, Table, TextForm};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the form of a packed value, and returns its pieces and the run of bytes that its parts fill.

@@ -8,7 +8,7 @@ use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Identifier, IdentifierField, Table};
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, IdentifierEntry, Key};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The widest identifier.
 const EXTENDED: u8 = 29;

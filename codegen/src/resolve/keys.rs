@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::{Encoding, Numeral, TextForm};
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
-use crate::syntax::tree::{Node, Path};
+use crate::tree::{Node, Path};
 
 /// Where a field stands. This decides which keys it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -3,10 +3,10 @@
 use std::fmt::Display;
 
 use super::Resolver;
-use super::long::MOST_BYTES;
+use super::window::MOST_BYTES;
 use crate::number::Rational;
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads a number of data bytes.

@@ -1,40 +1,26 @@
 //! Resolves messages longer than a frame, which travel in numbered parts or by a transport.
 
 use canspec_runtime::Place;
-use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
-use super::arrays::Windowed;
-use super::fields::Leaves;
+use super::head::Head;
+use super::leaves::Leaves;
 use super::parts::{PART, numbers};
+use super::window::{MOST_BYTES, Windowed, in_frame};
 use crate::model::{
-    Array, ArrayId, ByteRun, Carrier, Doc, Element, Id, LongMessage, LongMessageId, Message, MessageId, ModelId,
-    Reserved, Signal, SignalId, Table, TransportId, Varying,
+    Array, ArrayId, ByteRun, Carrier, LongMessage, LongMessageId, Message, MessageId, Signal, SignalId, Table,
+    TransportId, Varying,
 };
 use crate::resolve::rules;
 use crate::rule::Rule;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
-
-/// Most data bytes of a long message. ISO 15765-2 has no more, either.
-pub const MOST_BYTES: u16 = 4095;
+use crate::tree::Path;
 
 /// Data bytes that the first frame of ISO-TP has.
 const FIRST_BYTES: usize = 6;
 
 /// Most data bytes of a frame.
 const ONE_FRAME: usize = 8;
-
-/// What a long message is, whatever carries it.
-#[derive(Clone, Copy)]
-pub struct Head<'a> {
-    pub name: &'a str,
-    pub doc: &'a Doc,
-    /// The only models that have it.
-    pub models: &'a [ModelId],
-    /// What the bits are that nothing names.
-    pub reserved: Reserved,
-}
 
 /// The fields of a message's frames, and what several frames carry together.
 pub struct Carried {
@@ -171,7 +157,7 @@ impl Resolver<'_> {
     ) -> (Leaves, Option<LongMessageId>) {
         let is_sound = whole.given_up.is_empty();
         let one_frame = lengths.iter().copied().filter(|length| *length <= 8).max().unwrap_or(8);
-        let (signals, arrays) = in_one_frame(&whole, 0, one_frame.into());
+        let (signals, arrays) = whole.in_one_frame(0, one_frame.into());
         let plain = Leaves { signals, arrays, constants: Vec::new(), replies: whole.replies, given_up: whole.given_up };
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
@@ -305,39 +291,6 @@ impl Resolver<'_> {
         }
         Some(())
     }
-}
-
-/// Returns the signals of the first bytes, which stand behind some others in a frame, and the arrays that have elements
-/// there.
-pub fn in_one_frame(whole: &Leaves, before: u16, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
-    let signals = whole.signals.iter().filter(|signal| signal.run.is_none() && signal.reach() <= bytes);
-    let moved = |signal: &Signal| signal.clone().changed(|signal| signal.window += before);
-    let signals: Vec<_> = signals.filter_map(|signal| in_frame(&moved(signal))).collect();
-    let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
-    let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
-    let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();
-    let renumber = |element: Element| {
-        let place = kept.iter().position(|id| *id == element.array)?;
-        Some(Element { array: Id::new(place), ..element })
-    };
-    let renumbered = |signal: Signal| signal.changed(|signal| signal.element = signal.element.and_then(renumber));
-    (signals.into_iter().map(renumbered).collect(), arrays)
-}
-
-/// Returns a signal of the first eight bytes with its place in a frame.
-fn in_frame(signal: &Signal) -> Option<Signal> {
-    let moved = 8 * u8::try_from(signal.window).ok()?;
-    let in_frame = |place: Place| {
-        let (low, width) = (place.bits_of_payload().shift(), place.width());
-        let (payload, low) = match place.order() {
-            ByteOrder::Big => (Place::bytes(0, 7), low.checked_sub(moved)?),
-            ByteOrder::Little => (Place::bytes(7, 0), low + moved),
-        };
-        (low + width <= 64).then(|| payload.bits(low + width - 1, low))
-    };
-    let place = in_frame(signal.place)?;
-    let word = in_frame(signal.word).unwrap_or(place);
-    Some(signal.clone().changed(|signal| (signal.window, signal.place, signal.word) = (0, place, word)))
 }
 
 /// Makes the message that the parts carry together.

@@ -2,11 +2,11 @@
 
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
-use super::fields::Leaves;
+use super::head::Head;
+use super::leaves::Leaves;
 use super::lengths::lengths_with;
-use super::long::{Carried, Head};
-use super::patterns::entries;
-use super::sets::distinct;
+use super::long::Carried;
+use super::patterns::{distinct, entries};
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
@@ -15,7 +15,7 @@ use crate::model::{
 };
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The tables that messages refer to.
 pub struct Surroundings<'a> {

@@ -8,8 +8,9 @@ use canspec_runtime::Place;
 
 use super::Resolver;
 use super::access::Times;
-use super::fields::Leaves;
-use super::long::{Head, MOST_BYTES};
+use super::head::Head;
+use super::leaves::Leaves;
+use super::window::MOST_BYTES;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
     Announcement, Carrier, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, Numeral, OfModel, Parts,
@@ -18,7 +19,7 @@ use crate::model::{
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, ByModel, Key};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Name of the signal with the number of a part.
 pub const PART: &str = "part";

@@ -5,7 +5,7 @@ use super::texts::remarks;
 use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal, submasks};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key, Pattern};
-use crate::syntax::tree::{Path, Step};
+use crate::tree::{Path, Step};
 
 impl Resolver<'_> {
     /// Makes a selector of every field of the header.
@@ -241,4 +241,14 @@ pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Patter
 /// Tests whether an addressing pattern names a type.
 pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
     patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name))
+}
+
+/// Leaves out repeated constants.
+pub fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
+    constants.into_iter().fold(Vec::new(), |mut known, constant| {
+        if !known.contains(&constant) {
+            known.push(constant);
+        }
+        known
+    })
 }

@@ -3,7 +3,7 @@
 use super::Resolver;
 use crate::model::{Limit, Message, MessageId, QuantityPaths, SignalId, Table, Unit};
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the limits, and gives each to all signals that set its quantity.

@@ -11,7 +11,7 @@ use crate::model::{
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// How a path is written.
 const FORM: &str = "write the message and its signal, as in `output.voltage`, and a status bit behind its word";

@@ -1,14 +1,13 @@
 //! Reads the places of texts that no eight bytes can hold, and how long the open ones may be.
 
 use super::Resolver;
-use super::arrays::Windowed;
-use super::fields::Leaves;
-use super::long::MOST_BYTES;
+use super::leaves::Leaves;
 use super::types::Merged;
+use super::window::{MOST_BYTES, Windowed};
 use crate::model::{ByteRun, Signal};
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::{NUMBER_FORMATS, NumberFormat};
 
 /// Most bytes of a place.

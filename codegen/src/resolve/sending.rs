@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::{FieldId, FrameLayout, IdentifierField, Reserved};
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::EXPECTED;
 
 impl Resolver<'_> {

@@ -3,11 +3,12 @@
 
 use super::Resolver;
 use super::messages::{Draft, Owner, Surroundings};
+use super::patterns::distinct;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The most sets that a message can be a member of.
 const MOST_SETS: usize = 64;
@@ -130,16 +131,6 @@ impl Resolver<'_> {
         let help = format!("take `{name}` out of the `match` of `{member}` or of the set");
         self.diagnostics.push(Diagnostic::error(&rules::MATCH, at.at_value(), text).help(help));
     }
-}
-
-/// Leaves out repeated constants.
-pub fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
-    constants.into_iter().fold(Vec::new(), |mut known, constant| {
-        if !known.contains(&constant) {
-            known.push(constant);
-        }
-        known
-    })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::model::Sides;
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the names of the two sides.

@@ -3,14 +3,14 @@
 use canspec_runtime::Place;
 
 use super::Resolver;
-use super::arrays::Windowed;
 use super::keys::{Role, Site};
 use super::types::Merged;
+use super::window::Windowed;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{Conduct, DeviceModel, Doc, Misfit, ModelId, OfModel, Range, Signal, TypeOfModel};
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
 /// Most fields that device models change in a spec, each counted for each model.

@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{AfterSilence, Silence};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     pub fn after_silence(&mut self) -> Option<Silence> {

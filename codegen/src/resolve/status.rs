@@ -14,8 +14,8 @@ use crate::model::{Doc, StatusBit, StatusWord, StatusWordId};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key};
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 use crate::words::SEVERITIES;
 
 /// Bits of the widest word.

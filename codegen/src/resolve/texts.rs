@@ -12,8 +12,8 @@ use crate::nearest;
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Names, Words};
-use crate::syntax::tree::Path;
 use crate::text::Text;
+use crate::tree::Path;
 
 /// The keys that say something to readers, not to the codec.
 #[derive(Clone, Copy)]

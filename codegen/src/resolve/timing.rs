@@ -7,7 +7,7 @@ use crate::model::{Quantity, Table, TimeRole, Timing, TimingId, Unit, nanosecond
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The most nanoseconds of a time, as Rust counts them.
 const LONGEST: i128 = u64::MAX as i128;

@@ -9,7 +9,7 @@ use super::texts::remarks;
 use crate::model::{Id, Identifier, MessageId, Standard, Transport, TransportId};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Map};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The kinds of transports.
 static KINDS: [Kind; 2] = [j1939::KIND, isotp::KIND];

@@ -9,7 +9,7 @@ use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Largest number of types in a chain, in which each takes keys from the next.
 const CHAIN_LIMIT: usize = 64;

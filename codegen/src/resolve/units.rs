@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::{Symbol, Unit};
 use crate::multiples;
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the units that the spec declares beside those of the language.

@@ -8,11 +8,11 @@ use std::ops::Range;
 use indexmap::IndexMap;
 use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 
-use super::tree::{Content, Entry, Node};
 use crate::diagnostic::Diagnostic;
 use crate::rule::Rule;
 use crate::source::{Source, forbidden};
 use crate::syntax::rules;
+use crate::tree::{Content, Entry, Node};
 
 /// Deepest nesting of maps and lists.
 const DEPTH_LIMIT: usize = 64;

@@ -12,9 +12,9 @@ use std::ops::Range;
 use indexmap::IndexMap;
 
 use super::rules::REPLACES;
-use super::tree::{Content, Entry, Node};
-use crate::bases;
 use crate::diagnostic::Diagnostic;
+use crate::source::rules::BASED_ON;
+use crate::tree::{Content, Entry, Node};
 use base::Base;
 use listed::Listed;
 
@@ -38,7 +38,7 @@ pub(super) fn merge(trees: Vec<Option<Node>>, problems: &mut Vec<Diagnostic>) ->
     if let Some((name, at)) = based_on(&whole) {
         let text = format!("nobody has looked for the spec `{name}`");
         let help = "read this spec by `Bases::read`, or add its base by `Bases::add_to`";
-        problems.push(Diagnostic::error(&bases::BASED_ON, at, text).help(help));
+        problems.push(Diagnostic::error(&BASED_ON, at, text).help(help));
         return None;
     }
     problems.extend(stray_lists(&whole));
@@ -59,8 +59,7 @@ fn stray_lists(whole: &Node) -> impl Iterator<Item = Diagnostic> {
     let lists = LISTS.into_iter().filter_map(|key| Some((key, whole.entries()?.get(key)?)));
     lists.map(|(key, entry)| {
         let text = format!("`{key}` stands in a spec that takes nothing over");
-        Diagnostic::error(&bases::BASED_ON, entry.key.clone(), text)
-            .help("name another spec by `based_on`, or take it out")
+        Diagnostic::error(&BASED_ON, entry.key.clone(), text).help("name another spec by `based_on`, or take it out")
     })
 }
 

@@ -11,8 +11,8 @@ use serde_yaml::{Mapping, Value};
 use self::complaint::{Complaint, Kind};
 use super::ast::Spec;
 use super::rules::{PLAIN_WORD, UNKNOWN_KEY};
-use super::tree::{Content, Entry, Node, Path, Step};
 use crate::diagnostic::{At, Diagnostic};
+use crate::tree::{Content, Entry, Node, Path, Step};
 
 /// A spec is read this number of times at most.
 const ROUNDS: usize = 200;

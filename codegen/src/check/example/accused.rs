@@ -8,7 +8,7 @@ use super::repair::{self, Repair};
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Protocol, Signal};
 use crate::resolve::rules;
-use crate::syntax::tree::{Path, Step};
+use crate::tree::{Path, Step};
 
 /// Largest number of examples that are shown beside a field.
 const SHOWN: usize = 3;

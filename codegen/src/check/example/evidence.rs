@@ -11,7 +11,7 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, decode};
 use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
 use crate::resolve::rules;
-use crate::syntax::tree::{Content, Path};
+use crate::tree::{Content, Path};
 
 /// What one example says about a field.
 pub struct Evidence<'a> {

@@ -8,7 +8,7 @@ use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Decoded, Reading, Value};
 use crate::model::{Example, MessageId, Protocol, Range, Signal};
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The range whose value is farthest outside, or nearest to one of its ends.
 struct Limit<'a> {

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostics;
 use crate::encoding::{Words, said};
 use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
 use crate::number::Rational;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// A change of one key.
 pub struct Repair {

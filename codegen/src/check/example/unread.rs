@@ -8,7 +8,7 @@ use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, Problem, Unrecognised, decode};
 use crate::model::{Example, MessageId, Protocol};
 use crate::resolve::rules;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Largest number of examples that are shown beside a message.
 const SHOWN: usize = 3;

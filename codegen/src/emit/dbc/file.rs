@@ -5,7 +5,6 @@ use std::fmt::{self, Display, Formatter};
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
-use super::losses::is_writable;
 use super::names::short;
 use crate::model::Range;
 use crate::number::Rational;
@@ -62,6 +61,11 @@ BA_DEF_DEF_ "GenMsgCycleTime" 0;
 BA_DEF_DEF_ "GenSigStartValue" 0;
 BA_DEF_DEF_ "SystemMessageLongSymbol" "";
 BA_DEF_DEF_ "SystemSignalLongSymbol" "";"#;
+
+/// Tests whether readers of a DBC can hold a named raw value, as a signed number of 64 bits.
+pub fn is_writable(raw: i128) -> bool {
+    i64::try_from(raw).is_ok()
+}
 
 impl Display for File {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {

@@ -1,5 +1,6 @@
 //! Lists what a protocol says and a DBC cannot.
 
+use super::file::is_writable;
 use super::signals::written;
 use crate::model::{Kind, Message, Protocol, Signal};
 
@@ -53,11 +54,6 @@ fn lengths(message: &Message) -> Option<String> {
     let shorter: Vec<_> = shorter.iter().map(u8::to_string).collect();
     let text = || format!("`{}` can also have {} bytes", message.name, shorter.join(" or "));
     (!shorter.is_empty()).then(text)
-}
-
-/// Tests whether readers of a DBC can hold a named raw value, as a signed number of 64 bits.
-pub fn is_writable(raw: i128) -> bool {
-    i64::try_from(raw).is_ok()
 }
 
 /// Names the fields of the identifier with bits outside the mask.

@@ -4,9 +4,8 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
-use super::plan::address::{
-    Address, AddressType, Mode, NamedAddress, Number, Pattern, Sender, Shown, Target, Targets, Value,
-};
+use super::pattern::pattern;
+use super::plan::address::{AddressType, Mode, NamedAddress, Number, Sender, Shown, Target, Targets, Value};
 use super::plan::way::Way;
 use super::way::route;
 use crate::model::Id;
@@ -53,19 +52,6 @@ pub fn mode(Mode { constant, comment, name, target, patterns }: &Mode) -> TokenS
 
 fn option(value: Option<TokenStream>) -> TokenStream {
     value.map_or_else(|| quote!(None), |value| quote!(Some(#value)))
-}
-
-fn pattern(Pattern { constants, addresses }: &Pattern) -> TokenStream {
-    let constants = constants.iter().map(|(place, value)| quote!((Identifier::#place, #value)));
-    let addresses = addresses.iter().map(address);
-    quote!(Pattern { constants: &[#(#constants),*], addresses: &[#(#addresses),*] })
-}
-
-/// Writes a field that holds an address.
-pub fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
-    let ranges = excluded.iter().map(|(first, last)| quote!((#first, #last)));
-    let excluding = (!excluded.is_empty()).then(|| quote!(.excluding(&[#(#ranges),*])));
-    quote!(Address::new(Identifier::#place, &#kind) #excluding)
 }
 
 /// Emits the targets of requests.

@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::plan::carrier::Carrier;
-use super::plan::message::Request;
+use super::plan::request::Request;
 
 /// Emits what an assembler and a sender need.
 pub fn carrier(carrier: &Carrier) -> TokenStream {

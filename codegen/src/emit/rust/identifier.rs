@@ -5,9 +5,10 @@ use quote::quote;
 
 use super::choice::{either, tuple};
 use super::derives::Derives;
+use super::plan::comparison::{Comparison, Range, Test};
 use super::plan::documented::{Documented, Shown};
 use super::plan::heading::Heading;
-use super::plan::identifier::{Comparison, Field, Identifier, Range, Test};
+use super::plan::identifier::{Field, Identifier};
 
 /// Emits the struct of the identifier and its fields' places.
 pub fn identifier(identifier: &Identifier, derives: Derives) -> TokenStream {

@@ -6,12 +6,13 @@ use quote::quote;
 use super::carrier::in_parts;
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::message::{self, kinds, special_value, value};
 use super::plan::literal::decimal;
 use super::plan::long::{Carriage, Field, Length, Long, Row, Step};
 use super::plan::message::Message;
 use super::plan::signal::Member;
+use super::request::request;
 use super::scales;
+use super::signal::{kinds, special_value, value};
 use super::transport::{bare, sent, transferred};
 
 /// The longest array that `serde` knows.
@@ -26,7 +27,7 @@ pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
     let bare = transfer.iter().flat_map(|transfer| transfer.bare.iter().map(|own| bare(own, transfer)));
     let transferred = transfer.as_ref().filter(|_| !fields.is_empty()).map(|transfer| transferred(name, transfer));
     let signals = fields.iter().map(|field| signal(field, name));
-    let requests = requests.iter().map(|known| message::request(known, derives));
+    let requests = requests.iter().map(|known| request(known, derives));
     let parts = parts.iter().map(in_parts);
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));

@@ -6,9 +6,11 @@ use quote::{ToTokens, quote};
 use super::derives::Derives;
 use super::exchange::exchange;
 use super::long::long;
-use super::plan::message::{Length, Message, Request, Struct, Within};
-use super::plan::signal::{Member, Signal, Special};
+use super::plan::message::{Length, Message, Struct, Within};
+use super::plan::signal::{Member, Signal};
+use super::request::{request, request_of_model};
 use super::scales;
+use super::signal::{kinds, special_value, value};
 
 /// Emits every struct of a message.
 pub fn message(message: &Message, derives: Derives) -> TokenStream {
@@ -63,38 +65,6 @@ fn signal(signal: &Signal, owner: &Ident) -> TokenStream {
     quote!(#comment pub const #constant: Signal<#kinds> = #value; #(#values)* #on_model)
 }
 
-/// Emits the types of a signal: that of its raw value, and that of its limits if it is another.
-pub fn kinds(Signal { coding, physical, .. }: &Signal) -> TokenStream {
-    let (raw, physical) = (&coding.raw, physical.iter());
-    quote!(#raw #(, #physical)*)
-}
-
-/// Emits the value of a signal's constant.
-pub fn value(signal: &Signal) -> TokenStream {
-    let Signal { name, place, unit, coding, limits, model_limits, specials, has_absent, lacking, .. } = signal;
-    let unit = unit.iter().map(|unit| quote!(.unit(#unit)));
-    let offset = coding.offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
-    let scale = coding.scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
-    let limits = limits.iter().map(|[minimum, maximum]| quote!(.limits(#minimum, #maximum)));
-    let model_limits = model_limits.iter().map(|table| quote!(.model_limits(#table)));
-    let rows = specials.iter().map(|(raw, name)| quote!((#raw, #name)));
-    let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
-    let absent = has_absent.then(|| quote!(.absent()));
-    let lacking = lacking.iter().map(|(model, lack)| quote!((Model::#model as u8, #lack)));
-    let lacking = (!signal.lacking.is_empty()).then(|| quote!(.lacking(&[#(#lacking),*])));
-    let depends = signal.is_by_model.then(|| quote!(.by_model()));
-    quote! {
-        Signal::new(#name, #place)
-            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #lacking #depends
-    }
-}
-
-/// Emits the value that stands for a special raw value.
-pub fn special_value(Special { constant, comment, value }: &Special, signal: &Signal) -> TokenStream {
-    let kind = &signal.member.kind;
-    quote!(#comment pub const #constant: #kind = #value;)
-}
-
 /// Emits the method that tests values against a device model.
 fn within(Within { exchange, .. }: &Within) -> TokenStream {
     quote! {
@@ -102,32 +72,6 @@ fn within(Within { exchange, .. }: &Within) -> TokenStream {
         pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
             #exchange.within(model, &self)?;
             Ok(Within { values: self, model })
-        }
-    }
-}
-
-/// Emits the method that builds a request.
-pub fn request(known: &Request, derives: Derives) -> TokenStream {
-    let Request { method, comment, exchange, reply, carries } = known;
-    let (inlined, request_to) = (derives.inlined(), derives.request_to());
-    let (receiver, content) = if *carries { (quote!(&self,), quote!(self)) } else { (quote!(), quote!(&())) };
-    quote! {
-        #comment
-        #inlined
-        pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
-            #exchange.#request_to(route, #content)
-        }
-    }
-}
-
-/// Emits the method that builds a request to a device model.
-fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request, derives: Derives) -> TokenStream {
-    let (inlined, request_within) = (derives.inlined(), derives.request_within());
-    quote! {
-        #comment
-        #inlined
-        pub fn #method(&self, route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
-            #exchange.#request_within(self.model, route, &self.values)
         }
     }
 }

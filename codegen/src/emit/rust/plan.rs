@@ -3,6 +3,7 @@
 pub mod about;
 pub mod address;
 pub mod carrier;
+pub mod comparison;
 pub mod doc;
 pub mod documented;
 mod encoding;
@@ -17,7 +18,9 @@ pub mod models;
 pub mod naming;
 pub mod place;
 pub mod quantity;
+mod raw;
 pub mod recognition;
+pub mod request;
 pub mod rows;
 pub mod scales;
 pub mod selector;
@@ -182,7 +185,7 @@ fn continuation(protocol: &Protocol, selectors: &Selectors) -> Option<(Source, T
     let raw = |width| literal::hexadecimal(continuation.raw, width);
     match continuation.place {
         SelectorPlace::Identifier(field) => {
-            let (place, width) = identifier::field_place(protocol, field);
+            let (place, width) = comparison::field_place(protocol, field);
             Some((Source::Identifier(place), raw(width)))
         }
         SelectorPlace::Payload(place) => {

@@ -5,9 +5,9 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::message;
 use super::plan::message::Message;
 use super::plan::set::{Assembly, Member, Requests, Set};
+use super::request::request;
 
 /// Emits the struct, its requests, and what an assembler needs.
 pub fn set(message: &Message, set: &Set, derives: Derives) -> TokenStream {
@@ -27,7 +27,7 @@ fn definition(name: &Ident, Set { comment, is_exact, members, .. }: &Set, derive
 fn implementation(message: &Message, set: &Set, derives: Derives) -> TokenStream {
     let name = &message.home;
     let exchanges = message.exchanges.iter().map(exchange);
-    let own = message.structs.iter().flat_map(|known| &known.requests).map(|known| message::request(known, derives));
+    let own = message.structs.iter().flat_map(|known| &known.requests).map(|known| request(known, derives));
     let split = set.requests.as_ref().map(|known| requests(known, &set.members));
     quote!(impl #name { #(#exchanges)* #(#own)* #split })
 }

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::plan::literal::hexadecimal;
 use super::plan::long::Transfer;
-use super::plan::message::Request;
+use super::plan::request::Request;
 use super::plan::transport::{Carried, Needs, Transport};
 
 /// Emits what an assembler and a sender need of a transport.

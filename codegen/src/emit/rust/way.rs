@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::address::address;
+use super::pattern::address;
 use super::plan::address::{Number, Pattern};
 use super::plan::way::{Route, Shown, Way};
 use crate::model::{Id, ModeId};

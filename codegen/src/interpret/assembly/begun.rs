@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::mem;
 
-use super::{Peers, Transfer};
+use super::Transfer;
+use crate::interpret::assembled::Peers;
 use crate::model::{LongMessageId, Side};
 
 /// Which message it is, between which peers, and who sends it.

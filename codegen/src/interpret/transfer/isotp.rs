@@ -6,9 +6,9 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexMap;
 
 use super::{Arrived, Part, Started, sending};
-use crate::interpret::assembly::{Assembled, Peers, Taken, module};
-use crate::interpret::encode::{frame, refuse};
-use crate::interpret::{Frame, Refusal, padded};
+use crate::interpret::assembled::{Assembled, Peers, Taken, module};
+use crate::interpret::refusal::refuse;
+use crate::interpret::{Frame, Refusal, frame, padded};
 use crate::model::{
     Constant, FrameLayout, Isotp, LongMessage, ModeId, ModelId, Protocol, Side, Transport, TransportFrame, TransportId,
 };

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use indexmap::IndexMap;
 
 use super::{Arrived, Part, Started};
-use crate::interpret::assembly::{Assembled, Taken};
+use crate::interpret::assembled::{Assembled, Taken};
 use crate::interpret::content::blank_data;
-use crate::interpret::encode::{frame, refuse};
-use crate::interpret::{Frame, Note, Refusal};
+use crate::interpret::refusal::refuse;
+use crate::interpret::{Frame, Note, Refusal, frame};
 use crate::model::{
     FieldId, FrameLayout, Groups, LongMessage, MessageId, ModelId, NoteRule, Protocol, Transport, TransportFrame,
     TransportId,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::super::table::Table;
-use crate::syntax::tree::{Content, Node};
+use crate::tree::{Content, Node};
 
 /// Keys of the language with words for people.
 const PROSE: [&str; 10] =

@@ -6,11 +6,10 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::DATA;
 use crate::model::{FrameLayout, SelectorId, SelectorPlace, Signal, SignalId, Table};
 use crate::resolve::Resolver;
-use crate::resolve::fields::Leaves;
-use crate::resolve::long::in_one_frame;
+use crate::resolve::leaves::Leaves;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, PartData};
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// Most elements in a part, whose data are up to eight bytes.
 const MOST_ELEMENTS: u8 = 8;
@@ -71,7 +70,7 @@ impl Resolver<'_> {
             self.error_with_help(&rules::PARTS, path.at_key(), text, help);
             return None;
         }
-        let (signals, arrays) = in_one_frame(whole, first.into(), (size * count).into());
+        let (signals, arrays) = whole.in_one_frame(first.into(), (size * count).into());
         frame.signals.extend(signals);
         frame.arrays = arrays;
         Some(Place::bytes(first, last))

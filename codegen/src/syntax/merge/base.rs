@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::{Entries, sections};
-use crate::bases::BASED_ON;
 use crate::diagnostic::Diagnostic;
-use crate::syntax::tree::{Content, Entry, Node};
+use crate::source::rules::BASED_ON;
+use crate::tree::{Content, Entry, Node};
 
 /// Keys that say something about the other spec alone.
 pub const NEVER_TAKEN: [&str; 8] =

@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::nearest;
 use crate::rule::Rule;
 use crate::syntax::rules::{REMOVES, REPLACES};
-use crate::syntax::tree::{Content, Node};
+use crate::tree::{Content, Node};
 
 /// The paths that a spec lists.
 pub struct Listed {

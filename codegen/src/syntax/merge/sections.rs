@@ -1,7 +1,7 @@
 //! Names the document of sections.
 
 use super::Entries;
-use crate::syntax::tree::{Content, NAMING, Node};
+use crate::tree::{Content, NAMING, Node};
 
 /// Keys that hold one item, or a text in place of it.
 const ITEMS: [&str; 6] = ["after_silence", "value", "parts", "number", "counter", "length"];
@@ -45,7 +45,7 @@ fn named(section: &str, name: &str, others: &[String]) -> String {
 mod tests {
     use serde_json::Value;
 
-    use super::super::super::tree::{Content, Entry, Node};
+    use super::crate::tree::{Content, Entry, Node};
     use crate::schema::schema;
 
     fn node(content: Content) -> Node {

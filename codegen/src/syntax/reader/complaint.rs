@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::nearest;
 use crate::syntax::rules;
-use crate::syntax::tree::{Content, Node, Path, Step};
+use crate::tree::{Content, Node, Path, Step};
 
 /// An error of the reading.
 pub(super) enum Complaint {

@@ -3,8 +3,8 @@
 use indexmap::IndexSet;
 use proc_macro2::{Ident, TokenStream};
 
+use super::comparison::field_place;
 use super::doc::{self, Comment};
-use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{Pool, camel_case, ident, screaming};
 use crate::model::{self, AddressPattern, AddressTypeId, Doc, ModeId, Protocol, Table, Who};

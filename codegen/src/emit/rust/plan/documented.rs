@@ -2,7 +2,7 @@
 
 use proc_macro2::Ident;
 
-use super::identifier::{Comparison, Range, field_place, range};
+use super::comparison::{Comparison, Range, field_place, range};
 use crate::model::{AddressPattern, FieldId, Protocol};
 
 /// How many modes have a bit. The runtime works the others out from their patterns.

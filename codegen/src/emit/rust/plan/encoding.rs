@@ -5,12 +5,11 @@ use quote::{format_ident, quote};
 
 use super::limits::Limits;
 use super::literal::{Precision, decimal, hexadecimal};
+use super::raw::{Integer, integer, raw_number, raw_type};
 use crate::emit::Scaled;
-use crate::model::{
-    ByteRun, Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table, TextForm,
-};
+use crate::model::{ByteRun, Doc, Encoding, EnumerationId, Linear, Protocol, Signal, StatusWordId, Table, TextForm};
 use crate::number::Rational;
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 
 /// The types that words have of their own.
 pub struct WordTypes<'a> {
@@ -122,26 +121,6 @@ impl Coding {
     }
 }
 
-/// Returns the type of a number's raw values.
-pub fn raw_type(signal: &Signal) -> TokenStream {
-    if signal.encoding.is_single() {
-        return quote!(f32);
-    }
-    integer(signal.place.width(), signal.encoding.numeral())
-}
-
-/// Writes a raw value of an integer.
-pub fn raw_number(signal: &Signal, raw: i128) -> TokenStream {
-    let width = signal.place.width();
-    match (Integer::new(width, signal.encoding.numeral()).around, u64::try_from(raw)) {
-        (Some(around), Ok(digits)) => {
-            let digits = hexadecimal(digits, width);
-            quote!(#around::from_raw(#digits))
-        }
-        _ => decimal(raw),
-    }
-}
-
 /// Writes the numerator and the denominator of a number.
 pub fn fraction(number: Rational) -> [TokenStream; 2] {
     [number.numerator(), number.denominator()].map(decimal)
@@ -154,34 +133,6 @@ fn step(signal: &Signal, scaled: Scaled, Linear { numeral, scale, offset }: Line
     let offset = (offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
     let facts: Vec<_> = digits.map(str::to_owned).into_iter().chain(step).chain(offset).collect();
     (!facts.is_empty()).then(|| facts.join(", "))
-}
-
-/// Returns the smallest type of raw values that holds `width` bits.
-pub fn integer(width: u8, numeral: Numeral) -> TokenStream {
-    let Integer { kind, around, .. } = Integer::new(width, numeral);
-    around.map_or_else(|| quote!(#kind), |around| quote!(#around<#kind>))
-}
-
-/// What a numeral is in Rust.
-struct Integer {
-    /// The smallest integer that holds the bits.
-    kind: Ident,
-    /// The type of the runtime around it, which is made by `from_raw`.
-    around: Option<Ident>,
-    /// What the comment says of the digits.
-    digits: Option<&'static str>,
-}
-
-impl Integer {
-    fn new(width: u8, numeral: Numeral) -> Self {
-        let size = width.next_power_of_two().max(8);
-        let plain = |sign| Self { kind: format_ident!("{sign}{size}"), around: None, digits: None };
-        match numeral {
-            Numeral::Unsigned => plain("u"),
-            Numeral::Signed => plain("i"),
-            Numeral::Bcd => Self { around: Some(format_ident!("Bcd")), digits: Some("decimal digits"), ..plain("u") },
-        }
-    }
 }
 
 /// Returns the type of a text that no place holds.

@@ -9,7 +9,7 @@ use std::iter;
 use indexmap::{IndexMap, IndexSet};
 use proc_macro2::Ident;
 
-use super::identifier::{Range, Test, field_place, field_test, range};
+use super::comparison::{Range, Test, field_place, field_test, range};
 use crate::model::{FieldId, FieldTest, Protocol};
 
 /// How the identifier shows where a frame goes.

@@ -2,8 +2,8 @@
 
 use proc_macro2::TokenStream;
 
-use super::encoding::{raw_number, raw_type};
 use super::literal::Precision;
+use super::raw::{raw_number, raw_type};
 use crate::emit::Scaled;
 use crate::model::{Encoding, Range, Signal};
 use crate::number::Rational;

@@ -3,8 +3,8 @@
 use proc_macro2::Ident;
 
 use super::doc::Comment;
-use super::message::Request;
 use super::place::Written;
+use super::request::Request;
 use super::signal::Signal;
 use crate::model::{self, ByteRun, LongMessage, LongMessageId, SignalId};
 

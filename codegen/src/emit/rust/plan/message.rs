@@ -9,6 +9,7 @@ use super::literal;
 use super::long::{Carriage, Long, Transfer};
 use super::models::depends_on_model;
 use super::naming::Pool;
+use super::request::Request;
 use super::selector::Selectors;
 use super::signal::{Context, Signal};
 use super::{types, usage};
@@ -75,21 +76,6 @@ pub struct Length {
     pub bytes: TokenStream,
     /// The signals that shorter frames lack.
     pub added: Vec<SignalId>,
-}
-
-/// A method that builds a request.
-#[derive(Clone)]
-pub struct Request {
-    /// Its name.
-    pub method: Ident,
-    /// Comment of the method.
-    pub comment: Comment,
-    /// The path of the exchange.
-    pub exchange: TokenStream,
-    /// Type of the replies' values.
-    pub reply: TokenStream,
-    /// Whether the request carries the values of the struct.
-    pub carries: bool,
 }
 
 /// Values within the limits of a device model.

@@ -16,7 +16,7 @@ use crate::emit::Scaled;
 use crate::model::{
     self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, Parts, Protocol, Range, SignalId, Table,
 };
-use crate::syntax::tree::Path;
+use crate::tree::Path;
 use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
 /// A signal.

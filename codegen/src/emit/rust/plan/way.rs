@@ -3,7 +3,7 @@
 use proc_macro2::Ident;
 
 use super::address::{Addresses, Number, Pattern, target_names};
-use super::identifier::field_place;
+use super::comparison::field_place;
 use super::naming::ident;
 use crate::model::{self, AddressPattern, AddressTypeId, ModeId, Protocol, Who};
 

@@ -3,11 +3,12 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 
 use super::doc::{self, Comment};
-use super::encoding::{Part, integer};
+use super::encoding::Part;
 use super::limits::Limits;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
+use super::raw::integer;
 use super::types::Types;
 use crate::model::{self, Message, ModelId, NamedValue, Numeral, PartId, Protocol, Severity, Signal, Table};
 use crate::text::code;

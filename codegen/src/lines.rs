@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::text::visible;
+
 /// Bytes between two entries of the character index.
 const BLOCK: usize = 32;
-
-pub(super) const BYTE_ORDER_MARK: char = '\u{FEFF}';
 
 /// The text of a spec file and its name, and behind it those of the specs that it is based on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,7 +88,7 @@ impl Source {
     }
 
     /// Sets where it was read from.
-    pub(super) fn at_path(mut self, path: &Path) -> Self {
+    pub(crate) fn at_path(mut self, path: &Path) -> Self {
         self.files[0].path = Some(path.to_owned());
         self
     }
@@ -116,7 +116,7 @@ impl Source {
     }
 
     /// Makes a source of a text, and finds its lines.
-    pub(super) fn index(name: &str, text: String) -> Self {
+    pub(crate) fn index(name: &str, text: String) -> Self {
         Self::of(vec![File { name: visible(name), path: None, start: 0 }], text)
     }
 
@@ -147,32 +147,6 @@ impl Source {
         let block = offset / BLOCK;
         self.blocks[block] + count_characters(&self.text.as_bytes()[block * BLOCK..offset])
     }
-}
-
-/// Names the kind of a character that specs, file names and channel names must not hold.
-pub fn forbidden(character: char) -> Option<&'static str> {
-    match character {
-        ' '..='~' | '\t' | '\n' => None,
-        '\r' => Some("carriage return that ends no line"),
-        BYTE_ORDER_MARK => Some("byte order mark"),
-        '\u{85}' | '\u{2028}' | '\u{2029}' => Some("line separator that not every reader takes for one"),
-        '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => Some("mark that reverses the direction of text"),
-        '\u{AD}'
-        | '\u{61C}'
-        | '\u{180E}'
-        | '\u{200B}'..='\u{200F}'
-        | '\u{2060}'..='\u{206F}'
-        | '\u{FFF9}'..='\u{FFFB}'
-        | '\u{E0000}'..='\u{E007F}' => Some("character that nobody sees"),
-        '\u{FFFE}' | '\u{FFFF}' => Some("code point that is no character"),
-        _ if character.is_control() => Some("control character"),
-        _ => None,
-    }
-}
-
-/// Replaces characters that begin a line or act on a terminal.
-pub(crate) fn visible(text: &str) -> String {
-    text.replace(|character: char| character.is_control() || forbidden(character).is_some(), "\u{FFFD}")
 }
 
 fn starts_character(byte: u8) -> bool {
