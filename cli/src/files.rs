@@ -7,8 +7,9 @@ use crate::capture::Capture;
 use crate::encode;
 use crate::import;
 use crate::kept::Kept;
-use crate::line::{self, Outcome};
+use crate::line;
 use crate::log::Reader;
+use crate::outcome::Outcome;
 use crate::table::Table;
 
 /// A decoded line of a log.

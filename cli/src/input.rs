@@ -1,5 +1,7 @@
 //! The lines of a file or of standard input, with their numbers.
 
+mod interrupt;
+
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::iter;
@@ -9,7 +11,6 @@ use std::sync::Arc;
 
 use crate::doubt::Doubt;
 use crate::failure::{Failure, Finish, escaped, shown, tell};
-use crate::interrupt;
 use crate::log::{Entry, Reader};
 use crate::progress::Progress;
 use crate::signature;

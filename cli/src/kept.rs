@@ -6,8 +6,8 @@ use canspec_codegen::interpret::{self, Decoded, Frame, Recognised, Unrecognised}
 use canspec_codegen::model::{FrameId, Protocol};
 use rustc_hash::FxHashMap;
 
-use crate::line::Outcome;
 use crate::model::Device;
+use crate::outcome::Outcome;
 
 /// As many frames are kept at the same time. A bus has far fewer identifiers.
 const MOST: usize = 1 << 13;

@@ -7,7 +7,7 @@ mod transport;
 
 pub use input::{Content, Line, Message};
 pub use json::{integer, natural};
-pub use output::{Outcome, Whole, addresses, all_selectors, bit_names, selected, set_bits, write};
+pub use output::{addresses, all_selectors, bit_names, selected, set_bits, write};
 pub use transport::content as of_transport;
 
 use serde::{Serialize, Serializer};

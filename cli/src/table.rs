@@ -6,8 +6,9 @@ use canspec_codegen::model::{Kind, Mode, Protocol, SelectorId, Side};
 use crate::columns::{Columns, Lines};
 use crate::fields::{Field, Read, elements, fields};
 use crate::kept::Kept;
-use crate::line::{Outcome, addresses};
+use crate::line::addresses;
 use crate::log;
+use crate::outcome::Outcome;
 use crate::value;
 
 /// The columns that stand before that of the identifier: stamp and channel.

@@ -6,8 +6,9 @@ use std::iter::repeat_n;
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
 use crate::kept::Kept;
-use crate::line::{Outcome, all_selectors, bit_names, integer, natural, selected};
+use crate::line::{all_selectors, bit_names, integer, natural, selected};
 use crate::log;
+use crate::outcome::Outcome;
 use crate::table::{others, push};
 
 const HEADING: &str =

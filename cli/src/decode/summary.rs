@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::columns::{self, Row};
-use crate::line::{Outcome, Whole};
 use crate::log::{self, Asides};
+use crate::outcome::{Outcome, Whole};
 
 /// Counts of a log so far.
 #[derive(Clone, Default)]

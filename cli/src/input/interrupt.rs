@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::{mem, process, thread};
 
-use crate::input::LONGEST;
+use super::LONGEST;
 
 /// How shells show that a program was ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;

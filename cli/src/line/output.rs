@@ -8,34 +8,8 @@ use crate::kept::Kept;
 use crate::line::json::{integer, list, members, name, natural, number, object, optional, text};
 use crate::line::transport;
 use crate::log;
+use crate::outcome::Outcome;
 use crate::severity::Severity;
-
-/// A frame of a log, and what a protocol makes of it.
-pub struct Outcome<'a> {
-    pub line: usize,
-    /// The text of a number of JSON.
-    pub time: Option<&'a str>,
-    pub channel: Option<&'a str>,
-    pub frame: &'a Frame,
-    pub protocol: &'a Protocol,
-    pub decoded: &'a Result<Decoded, Unrecognised>,
-    /// What several frames say together; `None` for a frame.
-    pub whole: Option<Whole<'a>>,
-}
-
-/// What a long message has besides its values.
-pub struct Whole<'a> {
-    /// The lines of its frames.
-    pub lines: &'a [usize],
-    /// The joined data, if no part is missing.
-    pub data: Option<&'a [u8]>,
-    /// Bits that no signal covers.
-    pub reserved: &'a [u8],
-    /// The name of what tells it from the next message, and its value.
-    pub counter: Option<(&'a str, u64)>,
-    /// Which parts are missing.
-    pub incomplete: Option<&'a str>,
-}
 
 /// Writes a frame as one line.
 pub fn write(out: &mut Vec<u8>, kept: &mut Kept, outcome: &Outcome<'_>) {
