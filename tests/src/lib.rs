@@ -4,6 +4,7 @@ pub mod bare;
 pub mod engines;
 pub mod fuzz;
 pub mod long;
+pub mod modules;
 pub mod prose;
 pub mod random_specs;
 
