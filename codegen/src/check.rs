@@ -1,4 +1,9 @@
 //! The rules of the last stage: a resolved spec must also be right.
+//!
+//! Each rule is a file with one document, one function that looks for breaches, and one folder of
+//! fixtures. [`check`] calls them in the order of its list. They only read the model, and say what
+//! is wrong at the place of the spec that the model remembers. `example` has the interpreter decode
+//! and encode each example of the document; `summary` counts what a spec contains.
 
 mod ambiguous;
 mod default_value;
@@ -33,6 +38,7 @@ mod shared_address;
 mod special_value;
 mod stale_allowance;
 mod starting;
+pub(crate) mod summary;
 mod transport;
 mod unreachable;
 
@@ -40,10 +46,10 @@ pub use example::{Counts, Unproven, unproven};
 pub use grid::{fits, has_exact_steps};
 pub use stale_allowance::allow;
 
-use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
+use crate::report::diagnostic::Diagnostics;
+use crate::report::rule::Rule;
 use crate::resolve::rules;
-use crate::rule::Rule;
 
 /// Looks for breaches of one rule.
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);

@@ -18,12 +18,12 @@ mod text;
 pub use allowed::Allowed;
 use text::Text;
 
-use crate::hex;
 use crate::model::{
     DeviceModel, Encoding, Enumeration, EnumerationId, Misfit, ModelId, NoteRule, Protocol, Said, Signal, StatusWord,
     StatusWordId, Table,
 };
-use crate::number::Rational;
+use crate::words::hex;
+use crate::words::number::Rational;
 
 /// A physical value.
 #[derive(Clone, Debug, PartialEq)]

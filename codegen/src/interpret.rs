@@ -1,4 +1,9 @@
 //! The interpreter decodes and encodes by the model, at run time.
+//!
+//! `decode` follows the plan of the model to the kind of a frame and reads its values; `fit` ranks
+//! what the frame may be, and `notes` says what its document does not expect. `encode` and `request`
+//! make frames, which must decode to what was given. `assembly` and `transfer` put long messages
+//! together, `long` reads what they say. Generated Rust does the same, by the same model.
 
 mod arrays;
 mod assembled;
@@ -32,11 +37,11 @@ use std::fmt;
 
 use crate::encoding::value_of_bytes;
 pub use crate::encoding::{Input, Value, escape};
-use crate::hex;
 use crate::model::{
     AccessId, AddressTypeId, FieldId, FrameId, IdentifierField, Kind, LongMessageId, Message, MessageId, ModelId,
     NoteRule, Protocol, SelectorId, Side, Signal, SignalId, Table, Travel,
 };
+use crate::words::hex;
 
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,42 +7,33 @@
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 
-mod bases;
-mod builder;
+mod build;
 pub mod check;
-pub mod diagnostic;
 pub mod emit;
 mod encoding;
-pub mod files;
-mod hex;
 pub mod interpret;
-mod lines;
-mod lint;
-mod misplaced;
 pub mod model;
-pub mod multiples;
-mod nearest;
-pub mod number;
+mod read;
+mod reference;
+mod report;
 mod resolve;
-mod rule;
-pub mod rules;
-#[cfg(feature = "schema")]
-pub mod schema;
-pub mod source;
-mod summary;
-pub mod syntax;
-pub mod text;
-pub mod tree;
 mod words;
 
-pub use bases::Bases;
-pub use builder::{Builder, Generated, generate};
-use diagnostic::Diagnostics;
+pub use build::{Builder, Generated, files, generate};
+pub use check::summary::Summary;
 use model::Protocol;
-pub use nearest::nearest;
-use source::Source;
-pub use summary::Summary;
-use text::Text;
+pub use read::bases::Bases;
+use read::lint;
+use read::source::Source;
+pub use read::{source, syntax};
+pub use reference::rules;
+#[cfg(feature = "schema")]
+pub use reference::schema;
+pub use report::diagnostic;
+use report::diagnostic::Diagnostics;
+pub use words::nearest::nearest;
+use words::text::Text;
+pub use words::{number, text};
 
 /// The README's Rust compiles.
 #[cfg(doctest)]

@@ -3,6 +3,10 @@
 //! Only the compiler makes these values. A [`Protocol`] that exists has passed every check, unless
 //! [`compile_proven`](crate::compile_proven) made it, whose caller vouches for the spec. A stored
 //! one is what was stored.
+//!
+//! Its types refer to each other by ids of their own, so that no reference can miss. `recognition`
+//! is the plan by which every engine recognises frames. `keywords` and `unit_prefixes` have the
+//! words that a spec uses for what stands here.
 
 mod address;
 mod array;
@@ -13,6 +17,7 @@ mod example;
 mod extent;
 mod id;
 mod identifier;
+pub(crate) mod keywords;
 mod lacking;
 mod long;
 mod message;
@@ -27,6 +32,7 @@ mod silence;
 mod timing;
 mod transport;
 mod unit;
+pub mod unit_prefixes;
 
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
@@ -64,7 +70,7 @@ pub use unit::{Quantity, Symbol, Unit};
 
 use serde::{Deserialize, Serialize};
 
-use crate::text::Text;
+use crate::words::text::Text;
 
 /// A whole protocol.
 #[derive(Clone, Debug, Serialize, Deserialize)]

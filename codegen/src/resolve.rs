@@ -1,5 +1,10 @@
 //! Turns what is written into what is meant: names become references, places masks, and texts
 //! numbers.
+//!
+//! This stage makes the model: types, addresses and modes first, then fields and messages, their
+//! frames, and what depends on all of them, such as sets, examples and the plan by which frames are
+//! recognised. Each file reads the keys of one part of the language, and reports what it cannot
+//! read; a part with an error is given up, so that the others are still looked at.
 
 mod absent;
 mod access;
@@ -44,15 +49,15 @@ use std::collections::{HashMap, HashSet};
 
 use indexmap::{IndexMap, IndexSet};
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::Words;
 use crate::model::{
     self, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table, TransportId,
 };
-use crate::rule::Rule;
-use crate::syntax::ast;
-use crate::text::Text;
-use crate::tree::Path;
+use crate::read::syntax::ast;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::Rule;
+use crate::report::tree::Path;
+use crate::words::text::Text;
 
 /// Resolves a spec. `file` is its name without folders, and `rules` are the rules that it can
 /// allow.

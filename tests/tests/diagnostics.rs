@@ -90,7 +90,7 @@ fn every_note_says_what_it_means_and_what_to_do() {
 
 #[test]
 fn every_document_is_that_of_a_rule() -> Result {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../codegen/src/rules");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../codegen/docs/rules");
     let documents: BTreeSet<_> = files(&folder)?.iter().map(|path| file_name(path)).collect();
     assert_eq!(documents, RULES.iter().map(|rule| format!("{}.md", rule.name)).collect());
     Ok(())

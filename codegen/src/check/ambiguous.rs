@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/ambiguous.md")]
+#![doc = include_str!("../../docs/rules/ambiguous.md")]
 
 use std::collections::HashSet;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Message, Protocol, SelectorId};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     AMBIGUOUS "ambiguous" Check ERROR;

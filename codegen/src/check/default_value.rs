@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/default_value.md")]
+#![doc = include_str!("../../docs/rules/default_value.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::encoding::{Value, Words};
 use crate::model::{Message, ModelId, Protocol, Range, Signal};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     DEFAULT_VALUE "default_value" Check ERROR;

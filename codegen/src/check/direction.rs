@@ -1,15 +1,15 @@
-#![doc = include_str!("../rules/direction.md")]
+#![doc = include_str!("../../docs/rules/direction.md")]
 
 use std::collections::HashSet;
 
 use indexmap::IndexMap;
 
 use super::ambiguous::{Ranges, accepted};
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::hex;
 use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Message, Mode, Protocol, Way};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
+use crate::words::hex;
 
 rules! {
     DIRECTION "direction" Check ERROR;

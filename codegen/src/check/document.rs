@@ -1,10 +1,10 @@
-#![doc = include_str!("../rules/document.md")]
+#![doc = include_str!("../../docs/rules/document.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
-use crate::rule::rules;
-use crate::text::Text;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
+use crate::words::text::Text;
 
 rules! {
     DOCUMENT "document" Check EITHER;

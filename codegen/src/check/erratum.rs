@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/erratum.md")]
+#![doc = include_str!("../../docs/rules/erratum.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     ERRATUM "erratum" Check EITHER;

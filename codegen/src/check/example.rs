@@ -1,5 +1,5 @@
-#![doc = include_str!("../rules/example.md")]
-#![doc = include_str!("../rules/expected_failure.md")]
+#![doc = include_str!("../../docs/rules/example.md")]
+#![doc = include_str!("../../docs/rules/expected_failure.md")]
 
 mod accused;
 mod byte_order;
@@ -14,14 +14,14 @@ mod unreadable;
 pub use self::unproven::{Unproven, unproven};
 use self::unreadable::Slip;
 use super::overlap::bits;
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::{about_offset, escape, value_of_bytes};
-use crate::hex;
 use crate::interpret::{Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode};
 use crate::model::{Example, Failure, Meaning, Message, Misfit, NoteRule, Protocol, Side, Signal, ValueExample};
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::resolve::rules;
+use crate::words::hex;
 
-crate::rule::rules! {
+crate::report::rule::rules! {
     EXPECTED_FAILURE "expected_failure" Check ERROR;
 }
 

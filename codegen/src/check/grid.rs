@@ -1,10 +1,10 @@
-#![doc = include_str!("../rules/grid.md")]
+#![doc = include_str!("../../docs/rules/grid.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::Scaled;
 use crate::model::{Linear, Numeral, Protocol, Signal};
-use crate::number::Rational;
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::words::number::Rational;
 
 rules! {
     GRID "grid" Check ERROR;

@@ -1,7 +1,7 @@
-#![doc = include_str!("../rules/model_range.md")]
+#![doc = include_str!("../../docs/rules/model_range.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Message, OfModel, Protocol, Range, Signal};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules;
 
 /// What to do about a range that exceeds the general one.

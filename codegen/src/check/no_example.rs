@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/no_example.md")]
+#![doc = include_str!("../../docs/rules/no_example.md")]
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Message, MessageId, Protocol};
-use crate::rule::rules;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     NO_EXAMPLE "no_example" Check EITHER;

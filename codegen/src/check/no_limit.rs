@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/no_limit.md")]
+#![doc = include_str!("../../docs/rules/no_limit.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Kind, Message, Protocol, Signal, SignalId, Unit};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     NO_LIMIT "no_limit" Check WARNING;

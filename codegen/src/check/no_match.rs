@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/no_match.md")]
+#![doc = include_str!("../../docs/rules/no_match.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FrameLayout, IdentifierField, Message, Mode, Protocol, Way};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     NO_MATCH "no_match" Check WARNING;

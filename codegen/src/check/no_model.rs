@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/no_model.md")]
+#![doc = include_str!("../../docs/rules/no_model.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{ModelId, Protocol};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     NO_MODEL "no_model" Check ERROR;

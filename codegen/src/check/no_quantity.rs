@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/no_quantity.md")]
+#![doc = include_str!("../../docs/rules/no_quantity.md")]
 
 use std::collections::HashSet;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Message, Protocol, Signal, Unit};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     NO_QUANTITY "no_quantity" Check WARNING;

@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/no_refusal.md")]
+#![doc = include_str!("../../docs/rules/no_refusal.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{ExchangeId, Kind, Message, Protocol};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     NO_REFUSAL "no_refusal" Check WARNING;

@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/no_unit.md")]
+#![doc = include_str!("../../docs/rules/no_unit.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Protocol, Signal};
-use crate::number::Rational;
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::words::number::Rational;
 
 rules! {
     NO_UNIT "no_unit" Check WARNING;

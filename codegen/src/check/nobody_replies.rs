@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/nobody_replies.md")]
+#![doc = include_str!("../../docs/rules/nobody_replies.md")]
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Exchange, Kind, Message, Protocol, Who};
-use crate::rule::rules;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     NOBODY_REPLIES "nobody_replies" Check ERROR;

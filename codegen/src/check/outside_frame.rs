@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/outside_frame.md")]
+#![doc = include_str!("../../docs/rules/outside_frame.md")]
 
 use canspec_runtime::Place;
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Message, Protocol, Selector, SelectorPlace, Signal};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     OUTSIDE_FRAME "outside_frame" Check ERROR;

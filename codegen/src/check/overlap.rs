@@ -1,12 +1,12 @@
-#![doc = include_str!("../rules/overlap.md")]
+#![doc = include_str!("../../docs/rules/overlap.md")]
 
 use std::collections::{HashMap, HashSet};
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, FrameLayout, Message, Protocol, SelectorPlace, Signal};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::claims::{Claim, misplaced};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     OVERLAP "overlap" Check ERROR;

@@ -1,7 +1,7 @@
-#![doc = include_str!("../rules/product_limit.md")]
+#![doc = include_str!("../../docs/rules/product_limit.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Fixed, Limit, Message, ModelId, Protocol, QuantityPaths, Range, Signal};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules::PRODUCT_LIMIT;
 
 /// What the document allows on a device model, or on every one.

@@ -1,16 +1,16 @@
-#![doc = include_str!("../rules/quantity_path.md")]
+#![doc = include_str!("../../docs/rules/quantity_path.md")]
 
 use canspec_runtime::{Place, Quantity, QuantityKind};
 
 use super::ambiguous::are_alike;
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::Reading;
 use crate::interpret::signal_note;
 use crate::model::{
     Encoding, FieldPath, Fixed, FrameLayout, MessageId, Protocol, QuantityPaths, Signal, SignalId, SignalPath, Unit,
 };
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::tree::Path;
 use crate::resolve::rules::QUANTITY_PATH;
-use crate::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for known in &protocol.quantities {

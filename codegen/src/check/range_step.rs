@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/range_step.md")]
+#![doc = include_str!("../../docs/rules/range_step.md")]
 
 use std::iter;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Linear, Message, Protocol, Range, Signal};
-use crate::number::Rational;
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::words::number::Rational;
 
 rules! {
     RANGE_STEP "range_step" Check WARNING;

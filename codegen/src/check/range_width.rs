@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/range_width.md")]
+#![doc = include_str!("../../docs/rules/range_width.md")]
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
 use crate::model::{Message, Protocol, Range, Signal};
-use crate::number::Rational;
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
+use crate::words::number::Rational;
 
 rules! {
     RANGE_WIDTH "range_width" Check ERROR;

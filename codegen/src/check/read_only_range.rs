@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/read_only_range.md")]
+#![doc = include_str!("../../docs/rules/read_only_range.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Message, Protocol, Signal};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     READ_ONLY_RANGE "read_only_range" Check WARNING;

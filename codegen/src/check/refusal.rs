@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/refusal.md")]
+#![doc = include_str!("../../docs/rules/refusal.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Constant, FrameLayout, Kind, Message, Protocol};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     REFUSAL "refusal" Check ERROR;

@@ -1,12 +1,12 @@
-#![doc = include_str!("../rules/reply.md")]
+#![doc = include_str!("../../docs/rules/reply.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};
 use crate::model::{
     AddressPattern, AddressTypeId, Constant, Example, FrameLayout, Kind, Message, MessageId, Mode, Protocol,
     SelectorId, SelectorPlace, Who,
 };
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     REPLY "reply" Check ERROR;

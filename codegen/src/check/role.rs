@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/role.md")]
+#![doc = include_str!("../../docs/rules/role.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Kind, Message, MessageId, Protocol, TimeRole, Timing};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     ROLE "role" Check ERROR;

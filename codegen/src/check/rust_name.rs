@@ -1,13 +1,13 @@
-#![doc = include_str!("../rules/rust_name.md")]
+#![doc = include_str!("../../docs/rules/rust_name.md")]
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{Scaled, camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Id, ModelId, Protocol};
-use crate::rule::rules;
-use crate::tree::Path;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     RUST_NAME "rust_name" Check ERROR;
@@ -74,7 +74,7 @@ fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a
 
 #[cfg(test)]
 mod tests {
-    use crate::source::Source;
+    use crate::read::source::Source;
     use crate::{Outcome, compile};
 
     /// Compiles a spec of `count` device models.

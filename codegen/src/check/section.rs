@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/section.md")]
+#![doc = include_str!("../../docs/rules/section.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AfterSilence, Protocol};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     SECTION "section" Check WARNING;

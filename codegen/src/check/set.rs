@@ -1,11 +1,11 @@
-#![doc = include_str!("../rules/set.md")]
+#![doc = include_str!("../../docs/rules/set.md")]
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{
     Access, Constant, Exchange, FrameLayout, IdentifierField, Kind, Message, MessageId, Protocol, SelectorPlace, Set,
 };
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 /// Largest number of members in a set: one for each bit of an integer of 64 bits.
 const MOST: usize = 64;

@@ -1,10 +1,10 @@
-#![doc = include_str!("../rules/shared_address.md")]
+#![doc = include_str!("../../docs/rules/shared_address.md")]
 
 use std::collections::HashSet;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Mode, ModeId, Protocol};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     SHARED_ADDRESS "shared_address" Check WARNING;

@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/special_value.md")]
+#![doc = include_str!("../../docs/rules/special_value.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Protocol, Range, Signal};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     SPECIAL_VALUE "special_value" Check ERROR;

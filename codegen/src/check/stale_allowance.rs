@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/stale_allowance.md")]
+#![doc = include_str!("../../docs/rules/stale_allowance.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::rule::rules;
-use crate::syntax::ast::Allowance;
-use crate::tree::Path;
+use crate::read::syntax::ast::Allowance;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
+use crate::report::tree::Path;
 
 rules! {
     STALE_ALLOWANCE "stale_allowance" Check WARNING;

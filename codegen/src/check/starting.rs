@@ -1,8 +1,8 @@
-#![doc = include_str!("../rules/starting.md")]
+#![doc = include_str!("../../docs/rules/starting.md")]
 
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{ErrorCode, Protocol};
-use crate::rule::rules;
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     STARTING "starting" Check ERROR;

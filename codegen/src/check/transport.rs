@@ -3,8 +3,8 @@
 mod isotp;
 mod j1939;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{LongMessage, Protocol, Standard};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {

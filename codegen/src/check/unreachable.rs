@@ -1,9 +1,9 @@
-#![doc = include_str!("../rules/unreachable.md")]
+#![doc = include_str!("../../docs/rules/unreachable.md")]
 
 use super::ambiguous::{Ranges, accepted};
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldId, Foreign, FrameLayout, IdentifierField, Message, Protocol, Table};
-use crate::rule::rules;
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::rule::rules;
 
 rules! {
     UNREACHABLE "unreachable" Check ERROR;

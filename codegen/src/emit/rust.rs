@@ -35,7 +35,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Options;
-use crate::files::MARK;
+use crate::emit::MARK;
 use crate::model::Protocol;
 use derives::Derives;
 use layout::formatted;
@@ -125,7 +125,7 @@ fn head(plan: &Plan, derives: Derives) -> TokenStream {
 
 #[cfg(test)]
 mod tests {
-    use crate::source::Source;
+    use crate::read::source::Source;
 
     const SPEC: &str = r#"
 canspec: 1

@@ -2,7 +2,7 @@
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
 use crate::model::{DeviceModel, Misfit, ModelId, NamedValue, NoteRule, OfModel, Signal, Table};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 pub struct ByModel<'a> {
     pub signal: &'a Signal,

@@ -56,7 +56,7 @@ fn character(part: &str) -> Option<(char, &str)> {
         "t" => Some(('\t', rest)),
         "x" => {
             let (digits, rest) = rest.split_at_checked(2)?;
-            let [byte] = *crate::hex::bytes(digits)? else { return None };
+            let [byte] = *crate::words::hex::bytes(digits)? else { return None };
             byte.is_ascii().then_some((byte.into(), rest))
         }
         _ => None,

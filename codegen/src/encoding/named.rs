@@ -2,7 +2,7 @@
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
 use crate::model::{Enumeration, Misfit, NamedValue, NoteRule, Signal};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 pub struct Named<'a> {
     pub signal: &'a Signal,

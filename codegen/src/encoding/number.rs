@@ -5,7 +5,7 @@ use canspec_runtime::plumbing::{Scale, nearest};
 use super::quantity::{as_double, quantity, typed, wanted};
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
 use crate::model::{Misfit, NamedValue, NoteRule, Numeral, Range, Signal};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 pub struct Number<'a> {
     pub signal: &'a Signal,

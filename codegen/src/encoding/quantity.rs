@@ -1,16 +1,16 @@
 //! Numbers with a unit, as people and specs write them.
 
 use super::Input;
+use crate::model::unit_prefixes;
 use crate::model::{Misfit, Range, Signal, Unit};
-use crate::multiples;
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// Splits the unit off and reads the number.
 pub fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational, Misfit> {
     let Some(unit) = signal.unit.filter(|_| with_unit) else {
         return Rational::parse(text).ok_or_else(|| format!("`{text}` is not a number for `{}`", signal.name).into());
     };
-    multiples::read(text, unit, multiples::exact_factor).ok_or_else(|| {
+    unit_prefixes::read(text, unit, unit_prefixes::exact_factor).ok_or_else(|| {
         let why = format!("`{text}` is not a number of {} for `{}`", unit.symbol, signal.name);
         let help =
             converted(text, unit).map_or_else(|| what_fits(signal, unit), |value| format!("write it as `{value}`"));
@@ -45,7 +45,7 @@ fn last_digit(text: &str) -> Option<String> {
 
 /// Reads `750V`, `750 V`, `0.75 kV`, `750` or a name.
 pub fn typed(signal: &Signal, text: &str) -> Input {
-    let of_unit = |text| signal.unit.and_then(|unit| multiples::read(text, unit, multiples::factor));
+    let of_unit = |text| signal.unit.and_then(|unit| unit_prefixes::read(text, unit, unit_prefixes::factor));
     match of_unit(text).or_else(|| Rational::parse(text.trim())) {
         Some(value) => match value.to_integer() {
             Some(whole) => Input::Integer(whole),
@@ -73,7 +73,7 @@ fn converted(text: &str, unit: Unit) -> Option<String> {
     let (number, symbol) = text.split_at(text.find(|letter| !is_of_number(letter)).unwrap_or(text.len()));
     let factor = match symbol.trim_start() {
         "" => Rational::ONE,
-        symbol => multiples::factor(symbol, unit)?,
+        symbol => unit_prefixes::factor(symbol, unit)?,
     };
     let value = Rational::parse(number)?.times(factor)?;
     Some(format!("{value} {}", unit.symbol))

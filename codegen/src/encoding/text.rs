@@ -1,8 +1,8 @@
 //! Whole bytes as a text: ASCII that is filled up with NUL or another byte, or hexadecimal digits.
 
 use super::{Allowed, Input, Room, Value, bits, escape};
-use crate::hex;
 use crate::model::{Misfit, NoteRule, Signal, TextForm};
+use crate::words::hex;
 
 pub struct Text<'a> {
     pub signal: &'a Signal,

@@ -9,7 +9,7 @@ use crate::model::{
     Carrier, FrameLayout, LongMessage, Message, MessageId, ModelId, NoteRule, Parts, Protocol, SelectorPlace, Signal,
     Transport,
 };
-use crate::nearest;
+use crate::words::nearest::nearest;
 
 /// Notes that no request may get. It is refused instead.
 const FORBIDDEN: [NoteRule; 2] = [NoteRule::Address, NoteRule::Addressing];

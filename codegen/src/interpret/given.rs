@@ -8,7 +8,7 @@ use crate::model::{
     AddressPattern, EnumerationId, FieldId, FrameLayout, IdentifierField, Message, Protocol, Selector, SelectorId,
     SelectorPlace,
 };
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// What a call gives for a frame.
 pub struct Given {

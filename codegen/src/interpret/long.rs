@@ -9,10 +9,10 @@ use super::oddities::signal_note;
 use super::refusal::{refuse, twice};
 use super::value::{Limits, bytes_of, raw_of};
 use super::{Frame, Input, Note, Reading, Refusal};
-use crate::hex;
 use crate::model::{
     Announcement, Extent, FrameLayout, LongMessage, ModelId, NoteRule, Parts, Protocol, Signal, SignalId, TextForm,
 };
+use crate::words::hex;
 
 /// What a call writes for each signal, by name.
 type Texts = Vec<(String, String)>;

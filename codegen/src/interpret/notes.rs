@@ -2,8 +2,8 @@
 
 use super::fit::{Addressing, Candidate, Decoder, Fit};
 use super::{Note, hexadecimal, hexadecimal_ranges};
-use crate::hex;
 use crate::model::{FrameId, FrameLayout, Message, NoteRule, SelectorId, first_bytes};
+use crate::words::hex;
 
 impl<'a> Decoder<'a, '_> {
     /// Says that the number of a part means nothing without the device model.

@@ -12,7 +12,7 @@ use super::{Frame, Input, Refusal, decode, frame};
 use crate::model::{
     AddressPattern, AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set, Signal,
 };
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// Where a request goes.
 #[derive(Clone, Debug, PartialEq, Eq)]

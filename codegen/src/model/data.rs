@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Quantity, Range, Side, Unit};
-use crate::number::Rational;
-use crate::text::Text;
-use crate::tree::Path;
+use crate::report::tree::Path;
+use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// What the two sides are called in texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::{MessageId, Table};
-use crate::text::Text;
+use crate::words::text::Text;
 
 /// How a spec changes the one that it is based on.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{EnumerationId, Numeral, OfModel, PartId, Range, Signal, StatusWordId, Table};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// What a signal's bits mean.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Doc, Kind, LongMessageId, MessageId, ModelId, NoteRule, Range, Signal, SignalId};
-use crate::tree::Path;
+use crate::report::tree::Path;
 
 /// A frame of the document and what it means.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -52,16 +52,16 @@ impl NoteRule {
     /// Returns the note's document in Markdown: what it says of a frame, and what to do about it.
     pub const fn document(self) -> &'static str {
         match self {
-            Self::ErrorCode => include_str!("../notes/error_code.md"),
-            Self::Addressing => include_str!("../notes/addressing.md"),
-            Self::Address => include_str!("../notes/address.md"),
-            Self::UnknownValue => include_str!("../notes/unknown_value.md"),
-            Self::UnknownBit => include_str!("../notes/unknown_bit.md"),
-            Self::OutOfRange => include_str!("../notes/out_of_range.md"),
-            Self::NotFinite => include_str!("../notes/not_finite.md"),
-            Self::ReservedBit => include_str!("../notes/reserved_bit.md"),
-            Self::ModelDependent => include_str!("../notes/model_dependent.md"),
-            Self::Count => include_str!("../notes/count.md"),
+            Self::ErrorCode => include_str!("../../docs/notes/error_code.md"),
+            Self::Addressing => include_str!("../../docs/notes/addressing.md"),
+            Self::Address => include_str!("../../docs/notes/address.md"),
+            Self::UnknownValue => include_str!("../../docs/notes/unknown_value.md"),
+            Self::UnknownBit => include_str!("../../docs/notes/unknown_bit.md"),
+            Self::OutOfRange => include_str!("../../docs/notes/out_of_range.md"),
+            Self::NotFinite => include_str!("../../docs/notes/not_finite.md"),
+            Self::ReservedBit => include_str!("../../docs/notes/reserved_bit.md"),
+            Self::ModelDependent => include_str!("../../docs/notes/model_dependent.md"),
+            Self::Count => include_str!("../../docs/notes/count.md"),
         }
     }
 }

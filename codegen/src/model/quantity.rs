@@ -6,7 +6,7 @@ use canspec_runtime::Place;
 use serde::{Deserialize, Serialize};
 
 use super::{ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, Range, Signal, SignalId, Unit, place};
-use crate::tree::Path;
+use crate::report::tree::Path;
 
 /// Where a quantity is read and set.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -297,7 +297,7 @@ impl Planner<'_> {
 #[cfg(test)]
 mod tests {
     use crate::model::{FrameId, Protocol, SelectorPlace};
-    use crate::source::Source;
+    use crate::read::source::Source;
 
     /// Two messages of one command, told apart by their first byte, and a short one of another command.
     const SPEC: &str = r#"

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use canspec_runtime::Place;
 
 use crate::model::{DeviceModel, Doc, Element, Encoding, Kind, Limit, ModelId, Table, Unit, only, place};
-use crate::number::Rational;
-use crate::text::Text;
-use crate::tree::Path;
+use crate::report::tree::Path;
+use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// Named values of a signal.
 #[derive(Clone, Debug, Serialize, Deserialize)]

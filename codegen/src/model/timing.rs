@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Doc, MessageId, Quantity, Range, Unit};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// A time that the document states. Both ends are equal if it names one value.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -2,11 +2,11 @@
 
 use super::Resolver;
 use super::types::Merged;
+use crate::model::keywords::ABSENT;
 use crate::model::{NamedValue, Numeral};
+use crate::read::syntax::ast::Key;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
-use crate::tree::Path;
-use crate::words::ABSENT;
 
 /// The name of that raw value.
 const NOT_AVAILABLE: &str = "not_available";

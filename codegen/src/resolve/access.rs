@@ -3,12 +3,12 @@
 use super::Resolver;
 use super::patterns::{Entries, entries};
 use super::texts::remarks;
-use crate::diagnostic::Diagnostic;
+use crate::model::keywords::{ANSWERS, SIDES};
 use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Side, Table, Timing, TimingId, Who};
+use crate::read::syntax::ast;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
-use crate::words::{ANSWERS, SIDES};
 
 /// The addressing modes.
 pub type Modes = Table<ModeId, Mode>;

@@ -4,15 +4,15 @@ use super::Resolver;
 use super::keys::Role;
 use super::patterns::{is_address_type, patterns};
 use super::texts::remarks;
-use crate::diagnostic::Diagnostic;
+use crate::model::keywords::OUTSIDE;
 use crate::model::{
     Address, AddressPattern, AddressType, AddressTypeId, Identifier, IdentifierField, Mode, ModeId, Numeral, Table,
 };
-use crate::number::Rational;
+use crate::read::syntax::ast::{self, Pattern};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Pattern};
-use crate::tree::Path;
-use crate::words::OUTSIDE;
+use crate::words::number::Rational;
 
 /// The kinds of addresses.
 type AddressTypes = Table<AddressTypeId, AddressType>;

@@ -9,12 +9,12 @@ use super::Resolver;
 use super::leaves::Leaves;
 use super::types::Merged;
 use super::window::{MOST_BYTES, Windowed};
-use crate::diagnostic::Diagnostic;
 use crate::model::{Array, ArrayId, Doc, Element, Signal, SignalId, Table};
+use crate::read::syntax::ast::Key;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
-use crate::text::Text;
-use crate::tree::Path;
+use crate::words::text::Text;
 
 /// Most elements of an array in a frame. A status word has room for more bits.
 const MOST_ELEMENTS: u16 = 32;

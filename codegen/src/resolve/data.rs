@@ -3,13 +3,13 @@
 use super::Resolver;
 use super::keys::Role;
 use super::texts::{remarks, text};
+use crate::model::keywords::ERRATUM_KINDS;
 use crate::model::{DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, TypeOfModel};
-use crate::number::Rational;
+use crate::read::syntax::ast::{self, Key};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Key};
-use crate::text::Text;
-use crate::tree::Path;
-use crate::words::ERRATUM_KINDS;
+use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// The version of the spec language.
 const VERSION: &str = "1";

@@ -2,8 +2,8 @@
 
 use super::Resolver;
 use crate::model::{Derivation, Descent, Message, MessageId, Table};
-use crate::text::Text;
-use crate::tree::{Content, Node, Path};
+use crate::report::tree::{Content, Node, Path};
+use crate::words::text::Text;
 
 impl Resolver<'_> {
     /// Describes how a spec changes its base, if it has one.

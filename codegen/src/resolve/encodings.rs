@@ -4,12 +4,12 @@ use canspec_runtime::Place;
 
 use super::Resolver;
 use super::types::Merged;
+use crate::model::keywords::{NUMBER_FORMATS, NumberFormat};
 use crate::model::{Doc, Encoding, Numeral, TextForm};
-use crate::number::Rational;
+use crate::read::syntax::ast::Key;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
-use crate::tree::Path;
-use crate::words::{NUMBER_FORMATS, NumberFormat};
+use crate::words::number::Rational;
 
 impl Resolver<'_> {
     /// Returns the encoding. Types without a name of their own are called after `owner` and the field.

@@ -7,17 +7,17 @@ use super::Resolver;
 use super::printed::Printed;
 use super::texts::{remarks, suggestion};
 use super::window::MOST_BYTES;
-use crate::diagnostic::Diagnostic;
 use crate::encoding::said;
-use crate::hex;
+use crate::model::keywords::ORIGINS;
 use crate::model::{
     Array, Doc, Example, Failure, Id, Identifier, Kind, LongExample, Meaning, Message, MessageId, Misfit, NoteRule,
     Origin, Said, Signal, SignalId, StatusBit, Table, ValueExample,
 };
+use crate::read::syntax::ast::{self, Means};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::{Node, Path};
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Means};
-use crate::tree::{Node, Path};
-use crate::words::ORIGINS;
+use crate::words::hex;
 
 /// The messages of the protocol.
 type Messages = Table<MessageId, Message>;

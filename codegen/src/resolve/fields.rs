@@ -10,11 +10,11 @@ use super::runs::is_run;
 use super::texts::{self, remarks};
 use super::types::Merged;
 use super::window::Windowed;
-use crate::diagnostic::Diagnostic;
 use crate::model::{ByteRun, Doc, Encoding, Kind, PartId, Signal, Table};
+use crate::read::syntax::ast::{self, Field, Key, PartData};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Field, Key, PartData};
-use crate::tree::Path;
 
 /// Largest number of fields of a message, counting those of words, packed values and their types.
 const FIELD_LIMIT: usize = 256;

@@ -3,9 +3,9 @@
 use canspec_runtime::Place;
 
 use super::{Resolver, rules};
-use crate::diagnostic::Diagnostic;
 use crate::model::{PartId, Piece, Signal, Table, TextForm};
-use crate::tree::Path;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the form of a packed value, and returns its pieces and the run of bytes that its parts fill.

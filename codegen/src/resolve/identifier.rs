@@ -3,12 +3,12 @@
 use super::Resolver;
 use super::keys::Role;
 use super::texts::{self, remarks};
-use crate::diagnostic::{At, Diagnostic};
-use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Identifier, IdentifierField, Table};
+use crate::read::syntax::ast::{Field, IdentifierEntry, Key};
+use crate::report::claims::{Claim, misplaced};
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{Field, IdentifierEntry, Key};
-use crate::tree::Path;
 
 /// The widest identifier.
 const EXTENDED: u8 = 29;

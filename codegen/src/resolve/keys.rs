@@ -2,11 +2,11 @@
 
 use super::Resolver;
 use super::types::Merged;
-use crate::diagnostic::Diagnostic;
 use crate::model::{Encoding, Numeral, TextForm};
+use crate::read::syntax::ast::{Field, Key};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::{Node, Path};
 use crate::resolve::rules;
-use crate::syntax::ast::{Field, Key};
-use crate::tree::{Node, Path};
 
 /// Where a field stands. This decides which keys it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]

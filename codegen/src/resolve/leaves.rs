@@ -2,8 +2,8 @@
 
 use super::window::in_frame;
 use crate::model::{Array, ArrayId, Element, Id, Signal, Table};
-use crate::syntax::ast;
-use crate::tree::Path;
+use crate::read::syntax::ast;
+use crate::report::tree::Path;
 
 /// The result of resolving the fields of a message.
 #[derive(Default)]

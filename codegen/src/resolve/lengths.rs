@@ -4,9 +4,9 @@ use std::fmt::Display;
 
 use super::Resolver;
 use super::window::MOST_BYTES;
-use crate::number::Rational;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
+use crate::words::number::Rational;
 
 impl Resolver<'_> {
     /// Reads a number of data bytes.

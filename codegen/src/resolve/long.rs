@@ -11,10 +11,10 @@ use crate::model::{
     Array, ArrayId, ByteRun, Carrier, LongMessage, LongMessageId, Message, MessageId, Signal, SignalId, Table,
     TransportId, Varying,
 };
+use crate::read::syntax::ast;
+use crate::report::rule::Rule;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::rule::Rule;
-use crate::syntax::ast;
-use crate::tree::Path;
 
 /// Data bytes that the first frame of ISO-TP has.
 const FIRST_BYTES: usize = 6;

@@ -8,14 +8,14 @@ use super::lengths::lengths_with;
 use super::long::Carried;
 use super::patterns::{distinct, entries};
 use super::texts::remarks;
-use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
     LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
+use crate::read::syntax::ast;
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
 
 /// The tables that messages refer to.
 pub struct Surroundings<'a> {

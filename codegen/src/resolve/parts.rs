@@ -11,15 +11,15 @@ use super::access::Times;
 use super::head::Head;
 use super::leaves::Leaves;
 use super::window::MOST_BYTES;
-use crate::diagnostic::Diagnostic;
 use crate::model::{
     Announcement, Carrier, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, Numeral, OfModel, Parts,
     Range, Signal, SignalId, Table,
 };
-use crate::number::Rational;
+use crate::read::syntax::ast::{self, ByModel, Key};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, ByModel, Key};
-use crate::tree::Path;
+use crate::words::number::Rational;
 
 /// Name of the signal with the number of a part.
 pub const PART: &str = "part";

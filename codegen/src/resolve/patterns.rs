@@ -3,9 +3,9 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal, submasks};
+use crate::read::syntax::ast::{self, Field, Key, Pattern};
+use crate::report::tree::{Path, Step};
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Field, Key, Pattern};
-use crate::tree::{Path, Step};
 
 impl Resolver<'_> {
     /// Makes a selector of every field of the header.

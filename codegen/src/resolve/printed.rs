@@ -1,6 +1,6 @@
 //! Reads frames as documents print them.
 
-use crate::hex;
+use crate::words::hex;
 
 /// A frame as an example prints it.
 #[derive(Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use super::Resolver;
 use crate::model::{Limit, Message, MessageId, QuantityPaths, SignalId, Table, Unit};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the limits, and gives each to all signals that set its quantity.

@@ -3,15 +3,15 @@
 use indexmap::IndexSet;
 
 use super::Resolver;
-use crate::diagnostic::At;
 use crate::encoding::said;
 use crate::model::{
     Encoding, FieldPath, Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table,
 };
-use crate::number::Rational;
+use crate::read::syntax::ast;
+use crate::report::diagnostic::At;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
+use crate::words::number::Rational;
 
 /// How a path is written.
 const FORM: &str = "write the message and its signal, as in `output.voltage`, and a status bit behind its word";

@@ -1,6 +1,6 @@
 //! The rules on what is written, and some rules on what is meant that are tested here already.
 
-use crate::rule::{Rule, rules};
+use crate::report::rule::{Rule, rules};
 
 rules! {
     MISPLACED_KEY "misplaced_key" Resolve ERROR;

@@ -4,11 +4,11 @@ use super::Resolver;
 use super::leaves::Leaves;
 use super::types::Merged;
 use super::window::{MOST_BYTES, Windowed};
+use crate::model::keywords::{NUMBER_FORMATS, NumberFormat};
 use crate::model::{ByteRun, Signal};
+use crate::read::syntax::ast::Key;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
-use crate::tree::Path;
-use crate::words::{NUMBER_FORMATS, NumberFormat};
 
 /// Most bytes of a place.
 const MOST_OF_PLACE: u16 = 8;

@@ -3,9 +3,9 @@
 use super::Resolver;
 use super::types::Merged;
 use crate::model::{Encoding, ModelId, Numeral, OfModel, Range, Signal, Unit};
-use crate::number::Rational;
+use crate::read::syntax::ast::Key;
 use crate::resolve::rules;
-use crate::syntax::ast::Key;
+use crate::words::number::Rational;
 
 /// What says what a step is.
 const SCALES: [Key; 3] = [Key::Scale, Key::Offset, Key::Unit];

@@ -3,12 +3,12 @@
 
 use super::Resolver;
 use super::messages::Surroundings;
-use crate::diagnostic::Diagnostic;
+use crate::model::keywords::EXPECTED;
 use crate::model::{FieldId, FrameLayout, IdentifierField, Reserved};
+use crate::read::syntax::ast;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
-use crate::words::EXPECTED;
 
 impl Resolver<'_> {
     /// Reads what reserved bits are. A message takes the keys that it lacks from the protocol.

@@ -4,11 +4,11 @@
 use super::Resolver;
 use super::messages::{Draft, Owner, Surroundings};
 use super::patterns::distinct;
-use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
+use crate::read::syntax::ast;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
 
 /// The most sets that a message can be a member of.
 const MOST_SETS: usize = 64;
@@ -135,7 +135,7 @@ impl Resolver<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::source::Source;
+    use crate::read::source::Source;
     use crate::{Outcome, compile};
 
     /// Compiles a spec of `count` sets of one member.

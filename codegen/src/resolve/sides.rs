@@ -1,10 +1,10 @@
 //! Resolves what the two sides are called.
 
 use super::Resolver;
-use crate::diagnostic::Diagnostic;
 use crate::model::Sides;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the names of the two sides.

@@ -6,12 +6,12 @@ use super::Resolver;
 use super::keys::{Role, Site};
 use super::types::Merged;
 use super::window::Windowed;
-use crate::diagnostic::{At, Diagnostic};
+use crate::model::keywords::{OUT_OF_RANGE, POWER_OFF};
 use crate::model::{Conduct, DeviceModel, Doc, Misfit, ModelId, OfModel, Range, Signal, TypeOfModel};
+use crate::read::syntax::ast::{Field, Key};
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{Field, Key};
-use crate::tree::Path;
-use crate::words::{OUT_OF_RANGE, POWER_OFF};
 
 /// Most fields that device models change in a spec, each counted for each model.
 const MOST_CHANGES: usize = 1 << 16;

@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{AfterSilence, Silence};
-use crate::tree::Path;
+use crate::report::tree::Path;
 
 impl Resolver<'_> {
     pub fn after_silence(&mut self) -> Option<Silence> {

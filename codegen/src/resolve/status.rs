@@ -8,15 +8,15 @@ use indexmap::IndexMap;
 use super::Resolver;
 use super::texts::{remarks, text};
 use super::types::Merged;
-use crate::diagnostic::{At, Diagnostic};
-use crate::misplaced::{Claim, misplaced};
+use crate::model::keywords::SEVERITIES;
 use crate::model::{Doc, StatusBit, StatusWord, StatusWordId};
-use crate::number::Rational;
+use crate::read::syntax::ast::{self, Key};
+use crate::report::claims::{Claim, misplaced};
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Key};
-use crate::text::Text;
-use crate::tree::Path;
-use crate::words::SEVERITIES;
+use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// Bits of the widest word.
 const WIDEST: u8 = 64;

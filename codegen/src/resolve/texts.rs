@@ -5,15 +5,15 @@ use std::fmt::Display;
 use canspec_runtime::Place;
 
 use super::Resolver;
-use crate::diagnostic::At;
+use crate::model::unit_prefixes;
 use crate::model::{Doc, Id, Kind, Quantity, Range, Table, Unit};
-use crate::multiples;
-use crate::nearest;
-use crate::number::Rational;
+use crate::read::syntax::ast::{Field, Names, Words};
+use crate::report::diagnostic::At;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{Field, Names, Words};
-use crate::text::Text;
-use crate::tree::Path;
+use crate::words::nearest::nearest;
+use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// The keys that say something to readers, not to the codec.
 #[derive(Clone, Copy)]
@@ -130,7 +130,7 @@ impl Resolver<'_> {
             return self.range(path, text);
         };
         let Range { minimum, maximum } = self.range(path, ends)?;
-        let factor = unit.and_then(|unit| multiples::exact_factor(symbol, unit));
+        let factor = unit.and_then(|unit| unit_prefixes::exact_factor(symbol, unit));
         let scaled =
             factor.and_then(|factor| Some(Range { minimum: minimum.times(factor)?, maximum: maximum.times(factor)? }));
         if scaled.is_none() {
@@ -187,7 +187,7 @@ impl Resolver<'_> {
     /// Reads a unit of the language.
     pub fn unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
         let in_known = |(unit, _): (Unit, Rational)| format!("write the value in {}", unit.symbol);
-        self.unit_or(path, symbol, || multiples::prefixed(symbol).map_or_else(known_units, in_known))
+        self.unit_or(path, symbol, || unit_prefixes::prefixed(symbol).map_or_else(known_units, in_known))
     }
 
     /// Reads the unit of a field.
@@ -201,7 +201,7 @@ impl Resolver<'_> {
     fn unit_or(&mut self, path: &Path, symbol: &str, help: impl Fn() -> String) -> Option<Unit> {
         let unit = Unit::find(symbol).or_else(|| self.declared_unit(symbol));
         if unit.is_none() {
-            let help = match multiples::respelled(symbol) {
+            let help = match unit_prefixes::respelled(symbol) {
                 Some(unit) => format!("did you mean `{}`?", unit.symbol),
                 None => help(),
             };
@@ -377,7 +377,8 @@ fn known_units() -> String {
 
 /// Says how a field writes a multiple of a unit with a scale. A float cannot have one.
 fn scaled_unit(symbol: &str, field: &Field) -> Option<String> {
-    let (unit, factor) = multiples::prefixed(symbol).filter(|_| field.format_of_number.as_deref() != Some("float"))?;
+    let (unit, factor) =
+        unit_prefixes::prefixed(symbol).filter(|_| field.format_of_number.as_deref() != Some("float"))?;
     let step = field.scale.as_deref().map_or(Some(Rational::ONE), Rational::parse)?;
     let scale = step.times(factor)?;
     let scale = scale.fraction();

@@ -2,12 +2,12 @@
 
 use super::Resolver;
 use super::texts::remarks;
-use crate::diagnostic::Diagnostic;
 use crate::model::{Quantity, Table, TimeRole, Timing, TimingId, Unit, nanoseconds};
-use crate::number::Rational;
+use crate::read::syntax::ast;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast;
-use crate::tree::Path;
+use crate::words::number::Rational;
 
 /// The most nanoseconds of a time, as Rust counts them.
 const LONGEST: i128 = u64::MAX as i128;

@@ -7,9 +7,9 @@ mod j1939;
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Id, Identifier, MessageId, Standard, Transport, TransportId};
+use crate::read::syntax::ast::{self, Map};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Map};
-use crate::tree::Path;
 
 /// The kinds of transports.
 static KINDS: [Kind; 2] = [j1939::KIND, isotp::KIND];

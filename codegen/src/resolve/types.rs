@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use super::Resolver;
 use super::texts::{remarks, text};
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
-use crate::number::Rational;
+use crate::read::syntax::ast::{self, Field, Key};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, Field, Key};
-use crate::tree::Path;
+use crate::words::number::Rational;
 
 /// Largest number of types in a chain, in which each takes keys from the next.
 const CHAIN_LIMIT: usize = 64;

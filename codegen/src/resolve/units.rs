@@ -1,11 +1,11 @@
 //! Resolves the units that a spec declares.
 
 use super::Resolver;
-use crate::diagnostic::Diagnostic;
+use crate::model::unit_prefixes;
 use crate::model::{Symbol, Unit};
-use crate::multiples;
+use crate::report::diagnostic::Diagnostic;
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the units that the spec declares beside those of the language.
@@ -48,9 +48,9 @@ impl Resolver<'_> {
         let unit = Unit::declared(symbol, name);
         let (text, help) = if !is_symbol(symbol) {
             (format!("`{symbol}` is no symbol of a unit"), "write it without blanks, and not with a number in front")
-        } else if Unit::find(symbol).or_else(|| multiples::respelled(symbol)).is_some() {
+        } else if Unit::find(symbol).or_else(|| unit_prefixes::respelled(symbol)).is_some() {
             (format!("`{symbol}` is a unit of the language"), "take it out")
-        } else if multiples::prefixed(symbol).is_some() {
+        } else if unit_prefixes::prefixed(symbol).is_some() {
             (format!("`{symbol}` is a multiple of a unit of the language"), "write the unit, with a scale")
         } else if known.iter().any(|known| *known.symbol == *symbol) {
             (format!("`{symbol}` is declared twice"), "take one of the two out")

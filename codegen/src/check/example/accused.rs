@@ -5,10 +5,10 @@ use std::collections::HashSet;
 
 use super::evidence::{Evidence, Field, collect, missing_bit};
 use super::repair::{self, Repair};
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Protocol, Signal};
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::tree::{Path, Step};
 use crate::resolve::rules;
-use crate::tree::{Path, Step};
 
 /// Largest number of examples that are shown beside a field.
 const SHOWN: usize = 3;

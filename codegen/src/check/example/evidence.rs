@@ -7,11 +7,11 @@
 use indexmap::IndexMap;
 
 use super::shown;
-use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, decode};
 use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
+use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::report::tree::{Content, Path};
 use crate::resolve::rules;
-use crate::tree::{Content, Path};
 
 /// What one example says about a field.
 pub struct Evidence<'a> {

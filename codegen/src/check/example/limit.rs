@@ -4,11 +4,11 @@
 //! The bytes and the meaning of such an example agree, so the range is probably wrong.
 
 use super::shown;
-use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Decoded, Reading, Value};
 use crate::model::{Example, MessageId, Protocol, Range, Signal};
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 /// The range whose value is farthest outside, or nearest to one of its ends.
 struct Limit<'a> {

@@ -3,9 +3,9 @@
 use canspec_runtime::Place;
 
 use super::{Checked, fill, misfitting, shown, with_blanks, wrong};
-use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, Value, decode, encode_long};
 use crate::model::{LongExample, LongMessage, Protocol, Said, Standard, TransportFrame};
+use crate::report::diagnostic::{At, Diagnostic};
 use crate::resolve::rules;
 
 /// Decodes the frames, joins their parts, compares the values, and makes the frames again.

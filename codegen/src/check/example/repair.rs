@@ -4,11 +4,11 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::evidence::{Evidence, Field};
-use crate::diagnostic::Diagnostics;
 use crate::encoding::{Words, said};
 use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
-use crate::number::Rational;
-use crate::tree::Path;
+use crate::report::diagnostic::Diagnostics;
+use crate::report::tree::Path;
+use crate::words::number::Rational;
 
 /// A change of one key.
 pub struct Repair {

@@ -4,11 +4,11 @@
 use indexmap::IndexMap;
 
 use super::unreadable::Slip;
-use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, Problem, Unrecognised, decode};
 use crate::model::{Example, MessageId, Protocol};
+use crate::report::diagnostic::{At, Diagnostic};
+use crate::report::tree::Path;
 use crate::resolve::rules;
-use crate::tree::Path;
 
 /// Largest number of examples that are shown beside a message.
 const SHOWN: usize = 3;

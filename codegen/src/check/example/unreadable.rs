@@ -1,8 +1,8 @@
 //! Says why the frame of an example cannot be read, and what is probably wrong.
 
-use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, Problem, Unrecognised, failed_tests};
 use crate::model::{Constant, Example, FieldTest, FrameLayout, Kind, Protocol, SelectorPlace};
+use crate::report::diagnostic::{At, Diagnostic};
 use crate::resolve::rules;
 
 /// Reports an example whose frame is not recognised.

@@ -3,8 +3,8 @@
 use indexmap::IndexMap;
 
 use crate::check::ambiguous::fixed;
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{FieldId, FrameLayout, LongMessage, Protocol, Side, Signal, Travel, Who};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules;
 
 /// Data bytes that a first frame has, and that a single frame has.

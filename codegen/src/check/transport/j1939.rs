@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{FrameLayout, Groups, LongMessage, Protocol, Side};
+use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules;
 
 /// The messages of a transport, by what an announcement shows: who sends it, and the number of the group. Each has the

@@ -7,7 +7,7 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::names::short;
 use crate::model::Range;
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// A whole file.
 pub struct File {

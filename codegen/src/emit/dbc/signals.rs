@@ -8,7 +8,7 @@ use crate::model::{
     Encoding, NamedValue, Numeral, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
     TextForm,
 };
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// A signal as the file has it.
 pub struct Written {

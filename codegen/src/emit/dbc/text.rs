@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::model::{Doc, Document, Protocol, Sides, Unit};
-use crate::text::Text;
+use crate::words::text::Text;
 
 /// Returns the symbol of a unit, in ASCII.
 pub fn unit(unit: Unit) -> String {

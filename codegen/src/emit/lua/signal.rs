@@ -8,7 +8,7 @@ use crate::model::{
     Encoding, Lacking, Message, NamedValue, Numeral, OfModel, PartId, Piece, Protocol, Range, Signal, StatusBit, Table,
     TextForm,
 };
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// How a value is shown. Numbers are what has limits.
 const INTEGER: &str = "integer";

@@ -1,7 +1,7 @@
 //! Writes Lua tables in the layout that people use.
 
 use crate::model::Id;
-use crate::text::{Text, quoted_in_lua};
+use crate::words::text::{Text, quoted_in_lua};
 
 /// Columns of a line.
 const WIDTH: usize = 120;

@@ -8,7 +8,7 @@ use super::plan::doc::{self, Comment};
 use super::plan::usage::time;
 use crate::emit::Scaled;
 use crate::model::{Doc, Document, Protocol, Quantity, Silence, Timing};
-use crate::text::Text;
+use crate::words::text::Text;
 
 /// What the documentation is written from.
 pub struct Manual<'a> {

@@ -5,11 +5,11 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::DATA;
 use crate::model::{FrameLayout, SelectorId, SelectorPlace, Signal, SignalId, Table};
+use crate::read::syntax::ast::{self, PartData};
+use crate::report::tree::Path;
 use crate::resolve::Resolver;
 use crate::resolve::leaves::Leaves;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, PartData};
-use crate::tree::Path;
 
 /// Most elements in a part, whose data are up to eight bytes.
 const MOST_ELEMENTS: u8 = 8;

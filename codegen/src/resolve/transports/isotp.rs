@@ -1,10 +1,10 @@
 //! The transport of ISO 15765-2: its frames have the identifiers of the messages that it carries.
 
 use super::{Flaw, Kind};
+use crate::model::keywords::SIDES;
 use crate::model::{Identifier, Isotp, Standard};
-use crate::number::Rational;
-use crate::syntax::ast::{self, Map, Pattern};
-use crate::words::SIDES;
+use crate::read::syntax::ast::{self, Map, Pattern};
+use crate::words::number::Rational;
 
 /// The kind of transport.
 pub const KIND: Kind = Kind { name: "isotp", messages: include_str!("isotp.yaml"), flaw, accesses, complete, standard };

@@ -2,8 +2,8 @@
 
 use super::{Flaw, Kind};
 use crate::model::{Groups, Identifier, Standard};
-use crate::number::Rational;
-use crate::syntax::ast::{self, IdentifierEntry, Map, Pattern};
+use crate::read::syntax::ast::{self, IdentifierEntry, Map, Pattern};
+use crate::words::number::Rational;
 
 /// The kind of transport.
 pub const KIND: Kind = Kind { name: "j1939", messages: include_str!("j1939.yaml"), flaw, accesses, complete, standard };

@@ -4,7 +4,7 @@ use super::{Manual, section};
 use crate::emit::rust::plan::doc;
 use crate::emit::rust::plan::message::Message;
 use crate::model::{self, Constant};
-use crate::text::Text;
+use crate::words::text::Text;
 
 impl Manual<'_> {
     /// Lists the messages in the order of the document, each in a row.

@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 
 use crate::model::{Doc, Protocol};
-use crate::text::Text;
+use crate::words::text::Text;
 
 /// The longest line of text behind `/// `.
 const WIDTH: usize = 100;

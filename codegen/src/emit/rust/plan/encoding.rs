@@ -8,8 +8,8 @@ use super::literal::{Precision, decimal, hexadecimal};
 use super::raw::{Integer, integer, raw_number, raw_type};
 use crate::emit::Scaled;
 use crate::model::{ByteRun, Doc, Encoding, EnumerationId, Linear, Protocol, Signal, StatusWordId, Table, TextForm};
-use crate::number::Rational;
-use crate::tree::Path;
+use crate::report::tree::Path;
+use crate::words::number::Rational;
 
 /// The types that words have of their own.
 pub struct WordTypes<'a> {

@@ -6,7 +6,7 @@ use super::literal::Precision;
 use super::raw::{raw_number, raw_type};
 use crate::emit::Scaled;
 use crate::model::{Encoding, Range, Signal};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// How the limits of a signal are compared with its values.
 #[derive(Clone, Copy)]

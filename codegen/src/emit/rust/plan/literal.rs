@@ -7,7 +7,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 
 use crate::emit::Scaled;
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// Writes a field in hexadecimal, with the digits that its width needs.
 pub fn hexadecimal(value: impl Into<u64>, width: u8) -> TokenStream {

@@ -8,7 +8,7 @@ use super::limits;
 use super::naming::{Pool, model_variant};
 use crate::emit::Scaled;
 use crate::model::{FrameLayout, ModelId, Protocol, Range, Signal, SignalId, Table};
-use crate::tree::Step;
+use crate::report::tree::Step;
 
 /// Device models.
 pub struct Models {

@@ -9,7 +9,7 @@ use super::models::Models;
 use super::naming::Pool;
 use crate::emit::Scaled;
 use crate::model::{Message, OfModel, Protocol, Signal};
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// The methods that read and set a number whose scale depends on the device model.
 pub struct Scales {

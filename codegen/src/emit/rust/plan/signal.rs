@@ -13,11 +13,11 @@ use super::scales::Scales;
 use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
+use crate::model::keywords::{OUT_OF_RANGE, POWER_OFF};
 use crate::model::{
     self, Array, Conduct, Lacking, LongMessage, Message, MessageId, NamedValue, Parts, Protocol, Range, SignalId, Table,
 };
-use crate::tree::Path;
-use crate::words::{OUT_OF_RANGE, POWER_OFF};
+use crate::report::tree::Path;
 
 /// A signal.
 pub struct Signal {

@@ -1,9 +1,9 @@
 //! The units of values: those of the spec, or whole steps.
 
 use crate::emit::Scaled;
+use crate::model::unit_prefixes;
 use crate::model::{Linear, Signal};
-use crate::multiples;
-use crate::number::Rational;
+use crate::words::number::Rational;
 
 /// The unit of a signal's values in Rust.
 pub struct Unit {
@@ -34,7 +34,7 @@ impl Unit {
     /// Returns a unit with a decimal prefix if the steps are such a unit, counted from 0.
     fn of_steps(signal: &Signal, Linear { scale, offset, .. }: Linear) -> Self {
         let unit = signal.unit.filter(|_| offset == Rational::ZERO);
-        match unit.and_then(|unit| multiples::of_steps(unit, scale)) {
+        match unit.and_then(|unit| unit_prefixes::of_steps(unit, scale)) {
             Some((symbol, ending)) => Self { phrase: format!(" in {symbol}"), ending: Some(ending) },
             None => {
                 Self { phrase: format!(" in steps of {scale}{}", signal.unit_text()), ending: Some("raw".to_owned()) }

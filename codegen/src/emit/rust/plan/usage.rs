@@ -2,11 +2,11 @@
 
 use super::doc;
 use super::exchange::{Accesses, membership};
-use crate::hex;
 use crate::model::{
     Constant, Example, Exchange, ExchangeId, Kind, Meaning, Message, MessageId, Protocol, Side, Timing, Who,
 };
-use crate::text::Text;
+use crate::words::hex;
+use crate::words::text::Text;
 
 /// Describes a message: its selectors, accesses and printed frames, and the errata of all that.
 pub fn paragraphs(protocol: &Protocol, accesses: &Accesses, id: MessageId) -> Vec<String> {

@@ -11,7 +11,7 @@ use super::place::Written;
 use super::raw::integer;
 use super::types::Types;
 use crate::model::{self, Message, ModelId, NamedValue, Numeral, PartId, Protocol, Severity, Signal, Table};
-use crate::text::code;
+use crate::words::text::code;
 
 /// Named values.
 pub struct Enumeration {
