@@ -3,14 +3,14 @@
 use canspec_codegen::interpret::decode;
 use canspec_codegen::model::Protocol;
 
-use crate::capture::Capture;
-use crate::encode;
-use crate::import;
-use crate::kept::Kept;
-use crate::line;
+use crate::command::encode;
+use crate::command::import;
 use crate::log::Reader;
-use crate::outcome::Outcome;
-use crate::table::Table;
+use crate::log::capture::Capture;
+use crate::show::kept::Kept;
+use crate::show::line;
+use crate::show::outcome::Outcome;
+use crate::show::table::Table;
 
 /// A decoded line of a log.
 pub struct Shown {

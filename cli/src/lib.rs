@@ -5,47 +5,21 @@
 
 #![warn(clippy::wildcard_enum_match_arm)]
 
-mod capture;
-mod channels;
-mod check;
-mod columns;
-mod compile;
-mod completions;
-mod decode;
-mod doubt;
-mod encode;
-mod examples;
-mod export;
+mod choose;
+mod command;
 mod failure;
-mod fields;
 pub mod files;
-mod identify;
-mod import;
-mod input;
-mod kept;
-mod line;
-mod list;
 mod log;
-mod manual;
-mod model;
-mod outcome;
 mod output;
-mod progress;
-mod protocols;
-mod rules;
-mod schema;
-mod settings;
-mod severity;
-mod signature;
-mod table;
+mod show;
 mod tips;
-mod value;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
 
-use failure::{Failure, Finish, tell};
+use command::Command;
+use failure::{Failure, tell};
 use output::output;
 use tips::with_tip;
 
@@ -58,43 +32,6 @@ struct Canspec {
 }
 
 const EXIT_STATUS: &str = "Exit status: 0 done, 1 the input had errors, 2 the call was wrong.";
-
-#[derive(Subcommand)]
-enum Command {
-    Check(check::Check),
-    Compile(compile::Compile),
-    Completions(completions::Completions),
-    Decode(decode::Decode),
-    Encode(encode::Encode),
-    Examples(examples::Examples),
-    Export(export::Export),
-    Identify(identify::Identify),
-    Import(import::Import),
-    List(list::List),
-    Manual(manual::Manual),
-    Rules(rules::Rules),
-    Schema(schema::Schema),
-}
-
-impl Command {
-    fn run(&self) -> Result<Finish, Failure> {
-        match self {
-            Self::Check(check) => check.run(),
-            Self::Compile(compile) => compile.run(),
-            Self::Completions(completions) => completions.run(),
-            Self::Decode(decode) => decode.run(),
-            Self::Encode(encode) => encode.run(),
-            Self::Examples(examples) => examples.run(),
-            Self::Export(export) => export.run(),
-            Self::Identify(identify) => identify.run(),
-            Self::Import(import) => import.run(),
-            Self::List(list) => list.run(),
-            Self::Manual(manual) => manual.run(),
-            Self::Rules(rules) => rules.run(),
-            Self::Schema(_) => schema::Schema::run(),
-        }
-    }
-}
 
 /// Runs the command line.
 pub fn main() -> ExitCode {

@@ -1,10 +1,20 @@
-//! Logs of several programs, told apart by their lines.
+//! Logs: what comes in line by line, and what goes out as a log or a capture.
+//!
+//! The formats of several programs are told apart by their lines, one format a file. `input` reads
+//! the lines of a file or of standard input, and ends that on Ctrl-C; `doubt` and `signature` refuse
+//! what is no log, and `progress` shows how far a long one is read. `write` writes lines of candump,
+//! and `capture` a capture for Wireshark.
 
 mod asc;
+pub mod capture;
 mod compact;
 mod csv;
+mod doubt;
+pub mod input;
 mod part;
 mod plain;
+mod progress;
+mod signature;
 mod slcan;
 mod trc;
 mod write;

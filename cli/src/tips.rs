@@ -7,7 +7,8 @@ use canspec_specs::find;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Error, Parser};
 
-use crate::{Canspec, Command};
+use crate::Canspec;
+use crate::command::Command;
 
 /// Adds a tip to a refusal, if the call is right once the tip is followed.
 pub fn with_tip(mut refusal: Error) -> Error {

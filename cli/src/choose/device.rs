@@ -3,8 +3,8 @@
 use canspec_codegen::model::{DeviceModel, ModelId, Protocol};
 use clap::Args;
 
+use crate::choose::settings::Settings;
 use crate::failure::Failure;
-use crate::settings::Settings;
 
 /// A protocol, and the device model if one of its models is chosen.
 pub type Device<'a> = (&'a Protocol, Option<ModelId>);

@@ -9,8 +9,8 @@ use canspec_codegen::{Bases, Outcome, compile, compile_proven, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
+use crate::choose::settings::Settings;
 use crate::failure::{Failure, shown};
-use crate::settings::Settings;
 
 /// Chooses one protocol.
 #[derive(Args)]

@@ -11,10 +11,10 @@ use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use crate::choose::protocols;
 use crate::failure::{Failure, Finish, draw};
-use crate::line::Members;
 use crate::output::output;
-use crate::protocols;
+use crate::show::line::Members;
 
 /// Check specs and the examples of their documents.
 ///

@@ -8,9 +8,9 @@ use canspec_codegen::files::{self, File, State};
 use canspec_codegen::{Builder, Generated, generate};
 use clap::{Args, ValueEnum};
 
+use crate::choose::protocols;
 use crate::failure::{Failure, Finish, draw, shown, tell};
 use crate::output::output;
-use crate::protocols;
 
 /// Compile specs to Rust.
 ///

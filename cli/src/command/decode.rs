@@ -13,18 +13,18 @@ use canspec_codegen::interpret::{Assembled, Decoded, Frame, Taken, Unrecognised}
 use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
-use crate::capture::{Capture, Sealed};
-use crate::channels::{Channels, Others};
+use crate::choose::channels::{Channels, Others};
+use crate::choose::device::{Device, Model};
+use crate::choose::protocols::{self, Several};
 use crate::failure::{Failure, Finish, shown, tell};
-use crate::input::{Input, Line};
-use crate::kept::Kept;
-use crate::line;
+use crate::log::capture::{Capture, Sealed};
+use crate::log::input::{Input, Line};
 use crate::log::{Asides, Entry, Reader};
-use crate::model::{Device, Model};
-use crate::outcome::{Outcome, Whole};
 use crate::output::{self, output};
-use crate::protocols::{self, Several};
-use crate::table::Table;
+use crate::show::kept::Kept;
+use crate::show::line;
+use crate::show::outcome::{Outcome, Whole};
+use crate::show::table::Table;
 use assemblies::{Assemblies, Mark};
 use choice::Choice;
 use rows::Rows;

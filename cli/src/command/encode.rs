@@ -10,13 +10,13 @@ use canspec_codegen::interpret::{self, Frame, Refusal, Sent, Target, Targets};
 use canspec_codegen::model::{Kind, LongMessage, ModelId, Protocol, Signal};
 use clap::{Args, ValueEnum};
 
+use crate::choose::device::{Device, Model};
+use crate::choose::protocols::{self, Several};
 use crate::failure::{Failure, Finish};
-use crate::input::Input;
-use crate::line::{self, Content, Line, Message};
 use crate::log;
-use crate::model::{Device, Model};
+use crate::log::input::Input;
 use crate::output::output;
-use crate::protocols::{self, Several};
+use crate::show::line::{self, Content, Line, Message};
 
 /// Make a request, a report or a reply, or turn decoded lines back into frames.
 ///

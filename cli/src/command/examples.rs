@@ -8,11 +8,11 @@ use canspec_codegen::text::Text;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::columns::{self, Row};
+use crate::choose::protocols::One;
 use crate::failure::{Failure, Finish};
 use crate::log;
 use crate::output::output;
-use crate::protocols::One;
+use crate::show::columns::{self, Row};
 
 /// List the example frames of a protocol's document.
 ///

@@ -10,14 +10,14 @@ use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::channels::{Channels, Others};
-use crate::columns::{self, Row};
+use crate::choose::channels::{Channels, Others};
+use crate::choose::protocols;
 use crate::failure::{Failure, Finish};
-use crate::input::Input;
-use crate::line::bit_names;
 use crate::log::Reader;
+use crate::log::input::Input;
 use crate::output::output;
-use crate::protocols;
+use crate::show::columns::{self, Row};
+use crate::show::line::bit_names;
 
 /// Find out which protocols a log holds.
 ///

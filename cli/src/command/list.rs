@@ -28,9 +28,9 @@ use canspec_codegen::nearest;
 use clap::{Args, ValueEnum};
 
 use self::uses::Uses;
+use crate::choose::protocols;
 use crate::failure::{Failure, Finish};
 use crate::output::output;
-use crate::protocols;
 
 /// List the built-in protocols, or the messages of one.
 ///

@@ -1,7 +1,7 @@
 //! Whether an input is a log at all.
 
 use crate::log::Reader;
-use crate::signature;
+use crate::log::signature;
 
 /// As many unreadable lines before the first frame show that there is no log.
 const MOST: usize = 100;

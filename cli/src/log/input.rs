@@ -9,11 +9,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::doubt::Doubt;
 use crate::failure::{Failure, Finish, escaped, shown, tell};
+use crate::log::doubt::Doubt;
+use crate::log::progress::Progress;
+use crate::log::signature;
 use crate::log::{Entry, Reader};
-use crate::progress::Progress;
-use crate::signature;
 
 /// Longer lines are unreadable.
 pub const LONGEST: usize = 1 << 16;

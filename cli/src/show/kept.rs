@@ -6,8 +6,8 @@ use canspec_codegen::interpret::{self, Decoded, Frame, Recognised, Unrecognised}
 use canspec_codegen::model::{FrameId, Protocol};
 use rustc_hash::FxHashMap;
 
-use crate::model::Device;
-use crate::outcome::Outcome;
+use crate::choose::device::Device;
+use crate::show::outcome::Outcome;
 
 /// As many frames are kept at the same time. A bus has far fewer identifiers.
 const MOST: usize = 1 << 13;
@@ -98,9 +98,10 @@ mod tests {
     use canspec_specs::SPECS;
 
     use super::*;
-    use crate::decode::rows::Rows;
-    use crate::table::Table;
-    use crate::{line, protocols};
+    use crate::choose::protocols;
+    use crate::command::decode::rows::Rows;
+    use crate::show::line;
+    use crate::show::table::Table;
 
     /// Returns the frames of all examples, each with fewer bytes, too, and as other forms of frame.
     fn frames(protocol: &Protocol) -> Vec<Frame> {

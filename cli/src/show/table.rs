@@ -3,13 +3,13 @@
 use canspec_codegen::interpret::{Decoded, Unrecognised, Value};
 use canspec_codegen::model::{Kind, Mode, Protocol, SelectorId, Side};
 
-use crate::columns::{Columns, Lines};
-use crate::fields::{Field, Read, elements, fields};
-use crate::kept::Kept;
-use crate::line::addresses;
 use crate::log;
-use crate::outcome::Outcome;
-use crate::value;
+use crate::show::columns::{Columns, Lines};
+use crate::show::fields::{Field, Read, elements, fields};
+use crate::show::kept::Kept;
+use crate::show::line::addresses;
+use crate::show::outcome::Outcome;
+use crate::show::value;
 
 /// The columns that stand before that of the identifier: stamp and channel.
 const OF_STAMP: usize = 2;

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use canspec_codegen::interpret::{Reading, Value, escape};
 use canspec_codegen::model::{Linear, Protocol, Signal};
 
-use crate::line::bit_names;
 use crate::log;
+use crate::show::line::bit_names;
 
 /// More decimals than any scale needs that `check` accepts.
 const MOST_DECIMALS: usize = 18;
@@ -125,7 +125,7 @@ mod tests {
     use canspec_specs::SPECS;
 
     use super::*;
-    use crate::protocols;
+    use crate::choose::protocols;
 
     /// Every raw value up to 16 bits; beyond, the edges and a sample.
     fn raw_values(width: u8) -> Vec<u64> {

@@ -6,8 +6,8 @@ use std::{panic, thread};
 
 use super::Work;
 use crate::failure::{Failure, Finish};
-use crate::input::{Input, Line, Part, Written};
-use crate::kept::Kept;
+use crate::log::input::{Input, Line, Part, Written};
+use crate::show::kept::Kept;
 
 /// What was made of a part.
 struct Done<'a> {

@@ -4,9 +4,9 @@ use canspec_codegen::interpret::{Assembled, Assembly, Decoded, Taken};
 use canspec_codegen::model::Protocol;
 use indexmap::IndexMap;
 
-use crate::capture::nanoseconds;
+use crate::choose::device::Device;
 use crate::log::Entry;
-use crate::model::Device;
+use crate::log::capture::nanoseconds;
 
 /// What a long message remembers of a frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use canspec_codegen::nearest;
 use clap::Args;
 
 use crate::failure::{Failure, MOST_NAMES};
-use crate::line::set_bits;
-use crate::severity::Severity;
+use crate::show::line::set_bits;
+use crate::show::severity::Severity;
 
 /// Chooses what is shown of a log.
 #[derive(Args)]

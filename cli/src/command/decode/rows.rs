@@ -5,11 +5,11 @@ use std::iter::repeat_n;
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
-use crate::kept::Kept;
-use crate::line::{all_selectors, bit_names, integer, natural, selected};
 use crate::log;
-use crate::outcome::Outcome;
-use crate::table::{others, push};
+use crate::show::kept::Kept;
+use crate::show::line::{all_selectors, bit_names, integer, natural, selected};
+use crate::show::outcome::Outcome;
+use crate::show::table::{others, push};
 
 const HEADING: &str =
     "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data,selectors\n";

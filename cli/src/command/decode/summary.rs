@@ -8,9 +8,9 @@ use canspec_codegen::number::Rational;
 use serde::Serialize;
 use serde_json::value::RawValue;
 
-use crate::columns::{self, Row};
 use crate::log::{self, Asides};
-use crate::outcome::{Outcome, Whole};
+use crate::show::columns::{self, Row};
+use crate::show::outcome::{Outcome, Whole};
 
 /// Counts of a log so far.
 #[derive(Clone, Default)]

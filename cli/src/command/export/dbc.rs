@@ -8,9 +8,9 @@ use canspec_codegen::model::Protocol;
 use canspec_codegen::number::Rational;
 use clap::Args;
 
+use crate::choose::protocols::One;
 use crate::failure::{Failure, Finish, tell};
 use crate::output::output;
-use crate::protocols::One;
 
 /// Export a protocol as a DBC.
 ///

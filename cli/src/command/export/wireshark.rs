@@ -5,9 +5,9 @@ use std::io::Write;
 use canspec_codegen::emit;
 use clap::Args;
 
+use crate::choose::protocols::One;
 use crate::failure::{Failure, Finish};
 use crate::output::output;
-use crate::protocols::One;
 
 /// Export a protocol as a Wireshark dissector in Lua.
 ///

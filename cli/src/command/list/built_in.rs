@@ -8,9 +8,9 @@ use canspec_specs::SPECS;
 use serde::Serialize;
 
 use super::Format;
-use crate::columns::{self, Row};
+use crate::choose::protocols;
 use crate::failure::Failure;
-use crate::protocols;
+use crate::show::columns::{self, Row};
 
 /// A built-in protocol, and how many of its messages have examples that a document prints.
 #[derive(Serialize)]

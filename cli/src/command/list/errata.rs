@@ -7,7 +7,7 @@ use canspec_codegen::text::Text;
 
 use super::remarks::words;
 use super::rows;
-use crate::columns::Row;
+use crate::show::columns::Row;
 
 /// Writes those errata of a protocol that pass a test.
 pub fn write(out: &mut impl Write, protocol: &Protocol, is_shown: impl Fn(&Text) -> bool) -> io::Result<()> {

@@ -8,8 +8,8 @@ use canspec_codegen::model::{
 
 use super::remarks::words as text;
 use super::{rows, words};
-use crate::columns::Row;
 use crate::log;
+use crate::show::columns::Row;
 
 /// Writes the examples of a message, or those of none.
 pub fn write(out: &mut impl Write, protocol: &Protocol, id: Option<MessageId>) -> io::Result<()> {

@@ -9,7 +9,7 @@ use canspec_codegen::model::{
 };
 
 use super::words;
-use crate::columns::{self, Row};
+use crate::show::columns::{self, Row};
 
 /// Writes the table, if the message has frames of its own.
 pub fn write(out: &mut impl Write, protocol: &Protocol, message: &Message) -> io::Result<()> {

@@ -10,7 +10,7 @@ use canspec_codegen::model::{
 use super::remarks::{self, words as text};
 use super::rows::{row, table};
 use super::{heading, words};
-use crate::columns::Row;
+use crate::show::columns::Row;
 
 /// Writes the tables that have rows.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {

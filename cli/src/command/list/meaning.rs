@@ -6,7 +6,7 @@ use canspec_codegen::model::{
 use canspec_codegen::number::Rational;
 
 use super::words;
-use crate::severity::Severity;
+use crate::show::severity::Severity;
 
 /// Returns limits and number format of a signal.
 pub fn number(protocol: &Protocol, signal: &Signal) -> Vec<String> {

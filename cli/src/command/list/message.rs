@@ -7,8 +7,8 @@ use canspec_codegen::model::{Doc, Message, MessageId, Protocol, Signal, StatusBi
 use super::remarks::{own_section, sentences, title, words as text};
 use super::rows::{self, titled};
 use super::{carrier, derivation, examples, frames, meaning, words};
-use crate::columns::Row;
-use crate::severity::Severity;
+use crate::show::columns::Row;
+use crate::show::severity::Severity;
 
 /// Writes a message.
 pub fn write(out: &mut impl Write, protocol: &Protocol, id: MessageId) -> io::Result<()> {

@@ -7,7 +7,7 @@ use canspec_codegen::model::{DeviceModel, Protocol, TypeOfModel};
 use super::remarks::{sentences, texts, title, words};
 use super::rows::{self, titled};
 use super::{heading, meaning};
-use crate::columns::Row;
+use crate::show::columns::Row;
 
 /// Writes the table, if there are any. With notes it is complete.
 pub fn write(out: &mut impl Write, protocol: &Protocol, with_notes: bool) -> io::Result<()> {

@@ -7,7 +7,7 @@ use canspec_codegen::model::{Kind, Message, MessageId, Protocol, SelectorId, Sid
 use super::remarks::{errata, own_section, title, words};
 use super::rows::titled;
 use super::{carrier, derivation, heading, meaning, models, quantities, timing};
-use crate::columns::{self, Row};
+use crate::show::columns::{self, Row};
 
 /// The signal of a message that has only a value.
 const VALUE: &str = "value";

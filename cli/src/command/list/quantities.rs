@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use canspec_codegen::model::{Protocol, QuantityPaths, SignalPath};
 
-use crate::columns::{self, Row};
+use crate::show::columns::{self, Row};
 
 /// Writes the table, if there are quantities.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use canspec_codegen::model::Doc;
 
 use super::remarks::{sentences, title};
-use crate::columns::{self, Row};
+use crate::show::columns::{self, Row};
 
 /// Writes a table with a blank line above it, if it has rows.
 pub fn table(out: &mut impl Write, headings: &[&str], rows: &[Row]) -> io::Result<()> {

@@ -7,7 +7,7 @@ use canspec_codegen::text::Text;
 
 use super::remarks::{errata, sentences, title, words};
 use super::rows;
-use crate::columns::Row;
+use crate::show::columns::Row;
 
 /// Writes a table of the times, one of what silence does and one of the procedures, if there are any.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {

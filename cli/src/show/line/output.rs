@@ -1,15 +1,15 @@
 //! Turns a decoded frame into a line of JSON.
 
-use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
+use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressType, IdentifierField, Protocol, SelectorId, Signal, SignalId, StatusBit};
 
-use crate::fields::{Field, Read, elements, fields};
-use crate::kept::Kept;
-use crate::line::json::{integer, list, members, name, natural, number, object, optional, text};
-use crate::line::transport;
 use crate::log;
-use crate::outcome::Outcome;
-use crate::severity::Severity;
+use crate::show::fields::{Field, Read, elements, fields};
+use crate::show::kept::Kept;
+use crate::show::line::json::{integer, list, members, name, natural, number, object, optional, text};
+use crate::show::line::transport;
+use crate::show::outcome::Outcome;
+use crate::show::severity::Severity;
 
 /// Writes a frame as one line.
 pub fn write(out: &mut Vec<u8>, kept: &mut Kept, outcome: &Outcome<'_>) {

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use can_dbc::{MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
 use canspec_codegen::check::has_exact_steps;
+use canspec_codegen::model::unit_prefixes::{prefixed, respelled};
 use canspec_codegen::model::{Linear, Numeral, Unit};
-use canspec_codegen::multiples::{prefixed, respelled};
 use canspec_codegen::number::Rational;
 
 use super::index::Index;

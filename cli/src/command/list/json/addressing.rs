@@ -4,7 +4,7 @@ use canspec_codegen::model::{self, AddressPattern, AddressTypeId, Answers, Proto
 use serde::Serialize;
 
 use super::remarks::Remarks;
-use crate::list::words;
+use crate::command::list::words;
 
 /// A kind of addresses. The number of a raw value is `raw * sign + offset`.
 #[derive(Serialize)]

@@ -4,7 +4,7 @@ use canspec_codegen::model::{self, LongExample, Meaning, Message, MessageId, Not
 use serde::Serialize;
 
 use super::remarks::Remarks;
-use crate::list::{examples, words};
+use crate::command::list::{examples, words};
 use crate::log;
 
 /// An example of a frame, or of all frames of a long message.

@@ -4,7 +4,7 @@ use canspec_codegen::model::{Constant, FrameLayout, Protocol, Travel};
 use serde::Serialize;
 
 use super::addressing::Pattern;
-use crate::list::{frames, words};
+use crate::command::list::{frames, words};
 use crate::log;
 
 /// A kind of frame.

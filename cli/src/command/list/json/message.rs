@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::frame::Frame;
 use super::remarks::{Remarks, names};
 use super::signal::Signal;
-use crate::list::derivation;
+use crate::command::list::derivation;
 
 /// A message.
 #[derive(Serialize)]

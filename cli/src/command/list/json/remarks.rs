@@ -4,7 +4,7 @@ use canspec_codegen::model::{Doc, ModelId, NamedValue, Protocol};
 use canspec_codegen::text::Text;
 use serde::Serialize;
 
-use crate::list::remarks;
+use crate::command::list::remarks;
 
 /// Title, note, section and errata of an item.
 #[derive(Serialize)]

@@ -6,8 +6,8 @@ use canspec_codegen::text::Text;
 use serde::Serialize;
 
 use super::remarks::{Remarks, Value, names};
-use crate::list::{meaning, words};
-use crate::severity::Severity;
+use crate::command::list::{meaning, words};
+use crate::show::severity::Severity;
 
 /// A signal.
 #[derive(Serialize)]

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::remarks::Remarks;
 use super::signal::limits;
-use crate::list::words;
+use crate::command::list::words;
 
 #[derive(Serialize)]
 pub struct Document<'a> {
