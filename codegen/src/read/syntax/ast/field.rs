@@ -1,7 +1,7 @@
 //! The one table of a field's keys: each row says what is read, and whether a type passes it on.
 //!
 //! All else about a key stands in a `match` that names every [`Key`]. `resolve/keys.rs` says who
-//! reads the key, and `schema/values.rs` which values it takes.
+//! reads the key, and `reference/schema/values.rs` which values it takes.
 
 use indexmap::IndexMap;
 use serde::Deserialize;
