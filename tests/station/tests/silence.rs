@@ -35,7 +35,7 @@ fn on(bus: &mut Infies, until: u32) -> Vec<u8> {
     let mut on = Vec::new();
     while bus.now < until {
         bus.run_unfed(bus.now + 1);
-        let found = (0..8).filter(|node| bus.bench_device(*node).is_on && !on.contains(node));
+        let found = (0..8).filter(|node| bus.device(*node).is_on && !on.contains(node));
         on.extend(found.collect::<Vec<_>>());
     }
     on
@@ -70,7 +70,7 @@ fn a_bus_that_comes_back_carries_what_the_program_wants_first() {
     bus.run(3000);
     bus.station.deliver(1, output(400_000, 4000), bus.now).expect("the document allows it");
     bus.run(20_000);
-    assert!((0..4).all(|node| bus.bench_device(node).is_on));
+    assert!((0..4).all(|node| bus.device(node).is_on));
     bus.is_down = true;
     bus.run_unfed(25_000);
     bus.station.stop(1, bus.now).expect("the group is known");
