@@ -7,13 +7,12 @@ use bus::fleets::{infies, maxwells};
 use bus::{Bus, Charger};
 use canspec_protocols::{infy, mxr};
 use canspec_runtime::client::Output;
-use canspec_runtime::station::{Known, Refused, Rival};
+use canspec_runtime::station::{Known, Refused, Rival, SetPoint};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
 use canspec_station::{LIMITS, output};
 use seeds::{CYCLE, Counts, run};
 
-/// The voltage in mV, and the current in mA.
-const FULL: (i32, i32) = (500_000, 10_000);
+const FULL: SetPoint = output(500_000, 10_000);
 /// How many seeds run here, for a poor and a fair cycle each. `just seeds` runs more and longer.
 const SEEDS: u64 = 200;
 
@@ -23,13 +22,12 @@ fn modules_are_found_and_the_current_rises_step_by_step() {
     bus.run(3000);
     let found: Vec<_> = bus.station.modules().map(|node| (node, bus.station.group(node))).collect();
     assert_eq!(found, [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Some(1 + node / 4))));
-    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
-    bus.run(14_000);
+    bus.deliver(1, FULL, 14_000);
     for node in 0..8 {
         let is_told = node < 4;
         let device = *bus.device(node);
-        let output = is_told.then_some(FULL);
-        assert_eq!((device.is_on, device.voltage_mv.zip(device.current_ma)), (is_told, output), "module {node}");
+        let point = device.voltage_mv.map(|voltage_mv| SetPoint { voltage_mv, current_ma: device.current_ma });
+        assert_eq!((device.is_on, point), (is_told, is_told.then_some(FULL)), "module {node}");
         assert_eq!(device.steepest_ma, if is_told { LIMITS.rise_ma } else { 0 });
         let (station, now) = (&bus.station, bus.now);
         assert_eq!(station.output(node, now), if is_told { Output::On } else { Output::Off });
@@ -63,8 +61,7 @@ where
 {
     fn after_restart(&mut self, group: u8, restart: u32) -> (bool, bool, u32) {
         self.run(3000);
-        self.station.deliver(group, output(FULL.0, FULL.1), self.now).expect("the document allows it");
-        self.run(restart);
+        self.deliver(group, FULL, restart);
         self.bench.restart(3, self.now);
         self.run(restart + 8000);
         let device = self.device(3);
@@ -76,7 +73,7 @@ where
 fn a_switch_on_that_is_lost_in_a_restart_comes_again_after_its_set_point() {
     let mut bus = infies(3);
     bus.run(3000);
-    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
+    bus.station.deliver(1, FULL, bus.now).expect("the document allows it");
     // It restarts when its set-point has come, and before its switch-on.
     while bus.device(3).voltage_mv.is_none() {
         bus.run(bus.now + 1);
@@ -92,7 +89,7 @@ fn a_switch_on_that_is_lost_in_a_restart_comes_again_after_its_set_point() {
     assert_eq!(bus.device(3).switched_on, 0);
     bus.run(bus.now + 6000);
     let device = bus.device(3);
-    assert_eq!((device.is_on, device.was_bare, device.voltage_mv), (true, false, Some(FULL.0)));
+    assert_eq!((device.is_on, device.was_bare, device.voltage_mv), (true, false, Some(500_000)));
 }
 
 #[test]
@@ -104,8 +101,7 @@ fn a_stopped_group_from_which_nobody_was_awaited_is_not_off() {
     }
     bus.run(2000);
     assert_eq!(bus.station.modules().count(), 0);
-    bus.station.stop(5, bus.now).expect("the group is known");
-    bus.run(9000);
+    bus.stop(5, 9000);
     assert!(!bus.station.is_off(5, bus.now));
     // It was told all the same, and again and again.
     assert!([3, 4, 5, 6].into_iter().all(|node| !bus.device(node).is_on));
@@ -122,13 +118,12 @@ fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
     let mut bus = infies(9);
     bus.run(3000);
     for group in [1, 2] {
-        bus.station.deliver(group, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
+        bus.station.deliver(group, FULL, bus.now).expect("the document allows it");
     }
     bus.run(15_000);
     bus.faults(2).lost = 100;
-    bus.station.stop(1, bus.now).expect("the group is known");
     let stopped = bus.now;
-    bus.run(stopped + 60);
+    bus.stop(1, stopped + 60);
     let &(at, first) = bus.sent.iter().find(|(at, _)| *at >= stopped).expect("the station sends");
     assert_eq!((at - stopped < 50, first.to_string()), (true, "02DA01F0#0100000000000000".to_owned()));
     bus.run(stopped + 5000);
@@ -145,8 +140,7 @@ fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
 fn the_station_gives_way_to_another_controller_and_still_stops() {
     let mut bus = infies(11);
     bus.run(3000);
-    bus.station.deliver(1, output(FULL.0, FULL.1), bus.now).expect("the document allows it");
-    bus.run(12_000);
+    bus.deliver(1, FULL, 12_000);
     assert_eq!(bus.rivals(), []);
     let route = canspec_runtime::Route::new(infy::Target::Module(0), 0xF1);
     let request = infy::SetModuleOutput { voltage_v: 300.0, current_a: 2.0 }.set(route).expect("it is legal");
@@ -161,8 +155,7 @@ fn the_station_gives_way_to_another_controller_and_still_stops() {
     };
     assert_eq!(settings(&bus, 12_101), 0);
     assert_eq!([0, 1].map(|node| bus.device(node).voltage_mv), [Some(300_000), Some(500_000)]);
-    bus.station.stop(1, bus.now).expect("the group is known");
-    bus.run(26_000);
+    bus.stop(1, 26_000);
     assert_eq!((settings(&bus, 12_101), bus.device(1).is_on, bus.station.is_off(1, bus.now)), (0, false, true));
 }
 

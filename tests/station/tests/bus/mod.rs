@@ -10,9 +10,12 @@ use alloc::vec::Vec;
 use canspec_runtime::client::Output;
 use canspec_runtime::clock::has_come;
 use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
-use canspec_runtime::station::{Event as Told, Rival, Step};
+use canspec_runtime::station::{Event as Told, Rival, SetPoint, Step};
 use canspec_runtime::{Addressed, AfterSilence, Frame, Protocol, Quantities, Quantity, Received};
 use canspec_station::{Chargers, chargers, pace};
+
+/// The time from a frame of another controller to its next one, if it sends it once.
+pub const ONCE: u32 = u32::MAX / 4;
 
 /// What a module sends by itself.
 #[derive(Clone, Copy)]
@@ -240,6 +243,18 @@ where
     /// Lets time pass, in which modules may not be fed.
     pub fn run_unfed(&mut self, until: u32) {
         self.excused = until;
+        self.run(until);
+    }
+
+    /// Lets a group deliver from now on, and time pass.
+    pub fn deliver(&mut self, group: u8, point: SetPoint, until: u32) {
+        self.station.deliver(group, point, self.clock()).expect("the document allows it");
+        self.run(until);
+    }
+
+    /// Stops a group, and lets time pass.
+    pub fn stop(&mut self, group: u8, until: u32) {
+        self.station.stop(group, self.clock()).expect("the group is known");
         self.run(until);
     }
 
