@@ -32,14 +32,6 @@ fn stopped(seed: u64) -> Infies {
     bus
 }
 
-/// Lets time pass without a program.
-fn alone(bus: &mut Infies, until: u32) {
-    bus.is_stalled = true;
-    bus.run_unfed(until);
-    bus.is_stalled = false;
-    bus.kept.clear();
-}
-
 /// Lets time pass, and returns the modules that are on at the end of any millisecond.
 fn on(bus: &mut Infies, until: u32) -> Vec<u8> {
     let mut on = Vec::new();
@@ -276,9 +268,17 @@ fn a_station_whose_times_do_not_fit_is_none() {
 #[test]
 fn frames_that_lay_in_a_buffer_are_as_old_as_they_are() {
     let mut bus = stopped(14);
-    // The program stands still, and another one goes on reading. So the modules stay on the bus.
-    let read = infy::ModuleStatus::read(from_another(2)).expect("it is legal");
+    // The program stands still, and another one reads the module. The driver keeps the answers.
+    let read = infy::ModuleOutput::read(from_another(2)).expect("it is legal");
     rival(&mut bus, read.frame());
-    alone(&mut bus, 40_000);
-    assert_eq!(bus.state(2), Some(Output::Unknown));
+    bus.is_stalled = true;
+    bus.run_unfed(20_000);
+    bus.bench.no_other_controllers();
+    bus.run_unfed(40_000);
+    bus.is_stalled = false;
+    assert!(!bus.kept.is_empty());
+    bus.act();
+    assert_eq!(bus.station.output(2, bus.now), Output::Unknown);
+    let known = bus.station.voltage_mv(2, bus.now);
+    assert!(matches!(known, Known::Stale { value: 0, since: 19_001..20_000 }), "{known:?}");
 }
