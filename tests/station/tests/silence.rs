@@ -15,7 +15,7 @@ type Infies = Bus<infy::Message, 8, 2>;
 
 const OUTPUT: SetPoint = output(400_000, 4000);
 
-/// Returns modules that were found, and of which group 1 delivers until a time.
+/// Returns a bus on which the modules of group 1 were found, and deliver until a time.
 fn delivering(seed: u64, until: u32) -> Infies {
     let mut bus = infies(seed);
     bus.run(3000);
@@ -23,7 +23,7 @@ fn delivering(seed: u64, until: u32) -> Infies {
     bus
 }
 
-/// Returns modules that were found, and of which group 1 is stopped and known to be off.
+/// Returns a bus on which the modules of group 1 were found and stopped, and are known to be off.
 fn stopped(seed: u64) -> Infies {
     let mut bus = infies(seed);
     bus.run(3000);
