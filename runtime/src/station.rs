@@ -346,13 +346,13 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Sends the stops of groups that are not sent yet.
     fn stop_groups(&mut self, now: u32) {
         let Self { client, groups, settings, .. } = self;
-        let waiting =
-            |group: &&mut Group<P::Target>| group.task == Task::Stop && group.is_heard && group.stop.is_none();
-        for group in groups.iter_mut().filter(waiting) {
-            let request = group.target.and_then(|target| request::switch_off::<P>(settings, target).ok()?);
-            // What is asked of each module shows whether it is off. Without room, the group is stopped later.
-            let unanswered = request.map(Request::unanswered);
-            group.stop = unanswered.and_then(|request| client.every(settings.round, request, now).ok());
+        for group in groups.iter_mut().filter(|group| group.task == Task::Stop && group.is_heard) {
+            if group.stop.is_none() {
+                let request = group.target.and_then(|target| request::switch_off::<P>(settings, target).ok()?);
+                // What is asked of each module shows whether it is off. Without room, the group is stopped later.
+                let unanswered = request.map(Request::unanswered);
+                group.stop = unanswered.and_then(|request| client.every(settings.round, request, now).ok());
+            }
             group.stop.into_iter().for_each(|ticket| client.hurry(ticket, now));
         }
     }

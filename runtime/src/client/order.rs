@@ -103,7 +103,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
     }
 
-    fn is_due(&self, ticket: Ticket, now: u32) -> bool {
+    /// Tests whether a request is to be sent now.
+    pub(crate) fn is_due(&self, ticket: Ticket, now: u32) -> bool {
         self.entries.iter().flatten().any(|entry| entry.ticket == ticket && entry.due(now).is_some())
     }
 

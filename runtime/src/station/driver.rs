@@ -8,7 +8,9 @@ use crate::frame::classic;
 
 /// A driver of a bus that does not block.
 ///
-/// It must not give the frames back that it has sent itself.
+/// It must not give the frames back that it has sent itself. It should not keep frames for as long as a module takes to
+/// start: one that keeps a switch-on while the bus is away hands it to a module that has started meanwhile, before its
+/// set-point.
 pub trait Driver {
     /// What fails.
     type Error;

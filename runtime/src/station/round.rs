@@ -20,6 +20,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             module.lose(&mut self.client);
         }
         module.expire(now);
+        self.hurry_stop(place, now);
+        let Some(module) = self.modules.get_mut(place) else { return };
         if module.due.is_some_and(|due| !has_come(due, now)) {
             return;
         }
@@ -28,6 +30,20 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             // There is room again when no answer to an earlier request can come any more.
             let soon = now.wrapping_add(pace.wait).wrapping_add(pace.late).wrapping_add(1);
             self.modules.get_mut(place).into_iter().for_each(|module| module.due = Some(soon));
+        }
+    }
+
+    /// Lets what switches a module off go before what is read, in each round until it is off. A stop of its whole group
+    /// that is to be sent goes before that.
+    fn hurry_stop(&mut self, place: usize, now: u32) {
+        let Some(module) = self.modules.get(place) else { return };
+        let mut stops =
+            self.groups.iter().filter(|group| module.group == Some(group.number)).filter_map(|group| group.stop);
+        if module.goal == Goal::Off
+            && module.duty.output() != Output::Off
+            && !stops.any(|ticket| self.client.is_due(ticket, now))
+        {
+            module.duty.last().into_iter().for_each(|ticket| self.client.hurry(ticket, now));
         }
     }
 
@@ -163,11 +179,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if is_output {
             self.has_room()?;
         }
-        let Self { client, settings, groups, .. } = self;
+        let Self { client, settings, .. } = self;
         let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
         let is_new = module.goal != goal;
-        // A stop of the whole group goes before those of its modules.
-        let has_stop = groups.iter().any(|group| module.group == Some(group.number) && group.stop.is_some());
         if is_new && !is_output {
             module.duty.end(client);
             // What delivers again begins with the first step.
@@ -182,10 +196,8 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             Goal::Output { point, is_on } => output::<P>(settings, target, point, is_on),
         };
         module.duty.hold(client, requests.into_iter().flatten(), settings.round, agrees, now)?;
-        if is_new && goal == Goal::Off && !has_stop {
-            module.duty.last().into_iter().for_each(|ticket| client.hurry(ticket, now));
-        }
         module.goal = goal;
+        self.hurry_stop(place, now);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Stops, emergencies, and what is off.
 
 use super::bus::{Bus, Grouped, grouped, lone, settings, volts};
-use super::chargers::{Apart, At, InGroups, Message, group};
+use super::chargers::{Apart, At, AtOnce, InGroups, Message, group};
 use super::deliver::{deliver, known};
 use crate::client::Output;
 use crate::station::{Event, Found, Known, Refused, SetPoint, Station};
@@ -162,7 +162,7 @@ fn an_emergency_stops_all_and_goes_on_until_the_program_lets_groups_deliver() {
     bus.run(8700);
     let sent = bus.sent();
     // Nobody is in group 2.
-    assert_eq!(sent[..3], ["7600: all of 1 off", "7620: 2 off", "7640: 1 off"], "{sent:?}");
+    assert_eq!(sent[..3], ["7600: all of 1 off", "7620: 1 off", "7640: 2 off"], "{sent:?}");
     assert!(sent.iter().all(|text| !text.contains("all of 2")));
     assert!(bus.chargers.iter().all(|charger| !charger.is_on));
     assert_eq!(bus.station.deliver(1, volts(500, 10), bus.clock()), Err(Refused::Emergency));
@@ -234,6 +234,57 @@ fn a_module_is_off_only_while_it_says_so() {
     // It was read at 1010 for the last time.
     bus.run(6000);
     assert_eq!(bus.events(), [(1010 + 3001, Event::Output { node: 1, output: Output::Unknown })]);
+}
+
+#[test]
+fn a_switch_off_that_is_sent_again_goes_before_what_is_read() {
+    let mut bus = delivering();
+    bus.charger(2).refuses = Some((2, 2));
+    bus.station.stop(1, bus.clock()).expect("there is such a group");
+    bus.run(6450);
+    assert!(bus.charger(2).is_on && !bus.charger(1).is_on);
+    bus.forget();
+    // The program stands still for more than a round, so all of both modules is due. Module 1 is read first.
+    bus.now += 1500;
+    bus.run(bus.now + 200);
+    let sent = bus.sent();
+    let first = |text: &str| sent.iter().position(|sent| sent.contains(text)).expect("it is sent");
+    assert!(first(": 2 off") < first(": 1 state?") && first("all of 1 off") < first(": 1 state?"), "{sent:?}");
+}
+
+#[test]
+fn what_is_known_to_be_off_is_read_in_its_turn() {
+    let mut bus = delivering();
+    bus.station.stop(1, bus.clock()).expect("there is such a group");
+    bus.run(7600);
+    assert!(bus.station.is_off(1, bus.clock()));
+    bus.forget();
+    bus.now += 1500;
+    bus.run(bus.now + 200);
+    let sent = bus.sent();
+    let first = |text: &str| sent.iter().position(|sent| sent.contains(text)).expect("it is sent");
+    assert!(first(": 1 state?") < first(": 1 off") && first(": 2 state?") < first(": 2 off"), "{sent:?}");
+}
+
+#[test]
+fn what_switches_on_is_sent_after_what_switches_off() {
+    let groups = [(1, None), (2, None)];
+    let mut bus = Bus::<AtOnce, 2, 2, 16>::of(Station::new(settings(Found::Off), [1, 2], groups), [1, 2]);
+    for node in [1, 2] {
+        bus.station.assign(node, Some(node), 0).expect("it does not answer");
+    }
+    bus.charger(2).ignores = Some(3);
+    bus.charger(2).is_on = true;
+    bus.run(1500);
+    deliver(&mut bus, SetPoint { current_ma: None, ..volts(500, 0) }, 4400);
+    assert!(bus.charger(1).is_on && bus.charger(2).is_on);
+    // The program stands still, so both are due.
+    bus.forget();
+    bus.now += 1500;
+    bus.run(bus.now + 300);
+    let sent = bus.sent();
+    let first = |text: &str| sent.iter().position(|sent| sent.contains(text)).expect("it is sent");
+    assert!(first(": 2 60 V off") < first(": 1 500 V on"), "{sent:?}");
 }
 
 #[test]
