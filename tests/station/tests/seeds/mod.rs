@@ -5,15 +5,16 @@
 //! - each live module that was found is fed before its watchdog runs out, while the bus is there and the station has not
 //!   given way,
 //! - each request of a client ends once, as answered, refused, lost or done,
-//! - after a stop each module that is on is told to be off within a round, and again in each round. So none delivers for
-//!   longer than a round from the first frame that arrives, unless it misses or refuses the switch-offs of a round. That
-//!   holds for modules that another controller has switched on, and for those that have started by themselves, too. In
-//!   peace each is off and known to be off, or unknown if it is dead,
+//! - after a stop each module that is on is told to be off within a round, and again in each round, later only by the
+//!   stops of other addresses. So none delivers for longer than that from the first frame that arrives, unless it misses
+//!   or refuses the switch-offs of a round. That holds for modules that another controller has switched on, and for those
+//!   that have started by themselves, too. In peace each is off and known to be off, or unknown if it is dead,
 //! - while all is stopped no module is on that is said to be off. Two modules with one address are known to contradict
 //!   each other within two rounds,
 //! - no value is shown as fresh that was said longer ago than values count,
 //! - no limit is passed: of the voltage, of the current, of a group, and of how far the current rises at once,
-//! - no module is switched on without its set-point, and each delivers whose answers are not too poor,
+//! - no module is switched on without its set-point, unless it started while a driver kept the switch-on, and each
+//!   delivers whose answers are not too poor,
 //! - another controller that sets something is an event, and one that reads is none.
 //!
 //! `watch.rs` has what must hold in each turn, and `counts.rs` what happens meanwhile.
@@ -110,8 +111,8 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         self.draw_trouble(true);
         let watchdog = rules::<P>().watchdog;
         let quiet = self.fleet.bus.now + Trouble::longest(watchdog) + QUIET;
+        // A module can miss each switch-off of these rounds. The watch sees that it is told.
         self.pass(quiet)?;
-        self.check_off()?;
         self.twin_leaves();
         self.nodes.clone().into_iter().for_each(|node| {
             let faults = self.fleet.bus.faults(node);
@@ -164,6 +165,9 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
                 self.counts.add(TROUBLES[self.trouble.kind], 1);
                 (bus.is_down, bus.is_stalled) = (self.trouble.is_away(), self.trouble.is_still());
                 self.trouble.outage(now).into_iter().for_each(|outage| bus.bench.cut(outage));
+                if self.trouble.is_kept() {
+                    self.watch.kept = Some((now, self.trouble.ends));
+                }
                 if self.trouble.is_clock() {
                     bus.ahead = bus.ahead.wrapping_sub(self.random.below(60_000));
                 }

@@ -90,6 +90,10 @@ impl Trouble {
         self.kind == AWAY
     }
 
+    pub fn is_kept(&self) -> bool {
+        self.kind == KEPT
+    }
+
     pub fn is_still(&self) -> bool {
         self.kind == STILL
     }

@@ -7,11 +7,11 @@ use canspec_runtime::clock::has_come;
 use canspec_runtime::sim::Faults;
 use canspec_runtime::station::Limits;
 use canspec_runtime::{Addressed, Frame, Quantities, Quantity, Received};
-use canspec_station::ROUND;
+use canspec_station::{ADDRESSES, ROUND, pace};
 
-use crate::bus::{Bus, Charger};
+use crate::bus::{Bus, Charger, rules};
 
-/// How long a turn of the program takes at most, and how far what it does may be late for that, and for what goes before.
+/// How long a turn of the program takes at most, and how far what it does may be late for that.
 pub const TURN: u32 = 15;
 const LATE: u32 = 100;
 /// How long a value counts.
@@ -25,6 +25,8 @@ pub struct Watch<const N: usize> {
     pub stopped: Option<u32>,
     /// When something last parted the program from its modules.
     pub parted: u32,
+    /// From when until when a driver has last kept frames, if it has.
+    pub kept: Option<(u32, u32)>,
     /// What another controller has switched on.
     pub woken: Option<u8>,
     /// The address that two modules have, if there are two.
@@ -50,6 +52,7 @@ impl<const N: usize> Watch<N> {
         Self {
             stopped,
             parted,
+            kept: None,
             woken,
             shared,
             on,
@@ -89,6 +92,9 @@ impl<const N: usize> Watch<N> {
         let Bus { bench, station, .. } = bus;
         let mut sums_ma = [0; 8];
         for (place, (node, device, faults)) in bench.devices().enumerate() {
+            if self.is_caught_up::<P>(device, now) {
+                device.was_bare = false;
+            }
             self.obeys(node, device, limits)?;
             if !device.is_on || is_dead(faults, now) {
                 (self.on[place], self.denied[place]) = (None, None);
@@ -96,7 +102,7 @@ impl<const N: usize> Watch<N> {
             }
             sums_ma[usize::from(device.group.0)] += device.delivered_ma();
             let is_denied = station.output(node, clock) == Output::Off;
-            self.is_stopped_in_time(place, node, now)?;
+            self.is_stopped_in_time::<P>(place, node, now)?;
             self.is_not_denied(place, node, is_denied, now)?;
         }
         if let Some(sum_ma) = sums_ma.into_iter().find(|sum| *sum > limits.group_ma).filter(|_| self.shared.is_none()) {
@@ -152,17 +158,27 @@ impl<const N: usize> Watch<N> {
         Ok(())
     }
 
+    /// Tests whether a module has started while a driver kept frames, and hears them now. It can be switched on without
+    /// its set-point, since nobody knew of that when the frames were sent.
+    fn is_caught_up<P: Quantities + Addressed>(&self, device: &Charger<P>, now: u32) -> bool {
+        self.kept.is_some_and(|(from, until)| {
+            let has_started = from <= device.started + rules::<P>().boot && device.started <= until;
+            has_started && now <= until + stops::<P>()
+        })
+    }
+
     /// Tests that a module that is to be off is told so in each round. So it is on for longer than one only if it
-    /// misses or refuses that.
-    fn is_stopped_in_time(&mut self, place: usize, node: u8, now: u32) -> Result<(), String> {
+    /// misses or refuses that. The stops of all addresses can go before that.
+    fn is_stopped_in_time<P: Quantities>(&mut self, place: usize, node: u8, now: u32) -> Result<(), String> {
         let on = *self.on[place].get_or_insert(now);
         let Some(stopped) = self.stopped else { return Ok(()) };
         let since = stopped.max(self.parted).max(on);
         let told = self.told[place].max(since);
-        if now > told + ROUND + LATE {
+        let late = stops::<P>();
+        if now > told + ROUND + late {
             return Err(format!("module {node} is on, and was not told to be off for {} ms", now - told));
         }
-        if now > since + ROUND + LATE {
+        if now > since + ROUND + late {
             self.missed += 1;
             self.on[place] = Some(now);
         }
@@ -206,6 +222,12 @@ impl<const N: usize> Watch<N> {
         }
         Ok(())
     }
+}
+
+/// Returns how long it takes to send a stop to each address and to each group, in turns of the program.
+fn stops<P: Quantities>() -> u32 {
+    let count = u32::try_from(ADDRESSES.len() + 2).expect("few");
+    count * (pace::<P>().gap + TURN)
 }
 
 /// Tests whether a module is dead.
