@@ -5,6 +5,7 @@ use std::os::fd::AsFd;
 use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
 
 use crate::client::Bus;
 
@@ -25,13 +26,9 @@ impl<T: AsFd> Link<T> {
         Self { open: Some(open), tried: Instant::now() }
     }
 
-    pub const fn is_there(&self) -> bool {
-        self.open.is_some()
-    }
-
     /// Returns what it tells of the bus: an open one carries frames.
     pub const fn bus(&self) -> Bus {
-        if self.is_there() { Bus::On } else { Bus::Off }
+        if self.open.is_some() { Bus::On } else { Bus::Off }
     }
 
     pub const fn open(&mut self) -> Option<&mut T> {
@@ -43,13 +40,21 @@ impl<T: AsFd> Link<T> {
         *self = Self { open: None, tried: Instant::now() };
     }
 
+    /// Takes an error. It has gone, unless there is only no room or nothing to read now.
+    pub fn failed(&mut self, error: &io::Error) {
+        let is_full = error.raw_os_error() == Some(Errno::NOBUFS.raw_os_error());
+        if !is_full && !matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) {
+            self.lose();
+        }
+    }
+
     /// Opens it again if it has gone, from time to time. Returns whether it has come back.
     pub fn reopen(&mut self, open: impl FnOnce() -> io::Result<T>) -> bool {
-        if self.is_there() || self.tried.elapsed() < PATIENCE {
+        if self.open.is_some() || self.tried.elapsed() < PATIENCE {
             return false;
         }
         *self = Self { open: open().ok(), tried: Instant::now() };
-        self.is_there()
+        self.open.is_some()
     }
 
     /// Waits until something comes, or until this time has passed.
@@ -62,9 +67,4 @@ impl<T: AsFd> Link<T> {
         // A wait that is interrupted is only shorter.
         let _ = poll(&mut [PollFd::new(open, PollFlags::IN)], Some(&time));
     }
-}
-
-/// Tests whether there is no room or nothing to read now.
-pub fn is_passing(error: &io::Error) -> bool {
-    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
 }

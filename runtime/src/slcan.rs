@@ -26,7 +26,7 @@ use rustix::termios::{OptionalActions, isatty, tcgetattr, tcsetattr};
 
 use crate::Frame;
 use crate::client::Bus;
-use crate::link::{Link, is_passing};
+use crate::link::Link;
 use crate::station::Driver;
 use line::{Line, Lines};
 
@@ -77,6 +77,8 @@ pub struct Port {
     rate: BitRate,
     link: Link<File>,
     lines: Lines,
+    /// The line that is sent, of which the port has not taken all.
+    sent: Line,
 }
 
 impl Port {
@@ -88,12 +90,7 @@ impl Port {
     pub fn open(path: impl Into<PathBuf>, rate: BitRate) -> io::Result<Self> {
         let path = path.into();
         let link = Link::new(opened(&path, rate)?);
-        Ok(Self { path, rate, link, lines: Lines::NEW })
-    }
-
-    /// Tests whether the adapter is there.
-    pub const fn is_there(&self) -> bool {
-        self.link.is_there()
+        Ok(Self { path, rate, link, lines: Lines::NEW, sent: Line::NONE })
     }
 
     /// Waits until something comes, or until this time has passed.
@@ -101,17 +98,22 @@ impl Port {
         self.link.wait(milliseconds);
     }
 
-    /// Opens the port again if it has gone, from time to time.
-    fn reopen(&mut self) {
+    /// Opens the port again if it has gone, from time to time. Sends what is left of a line.
+    fn go_on(&mut self) {
         if self.link.reopen(|| opened(&self.path, self.rate)) {
-            self.lines = Lines::NEW;
+            (self.lines, self.sent) = (Lines::NEW, Line::NONE);
+        }
+        if !self.sent.rest().is_empty() {
+            self.write();
         }
     }
 
-    /// Takes what has happened to the port: it has gone, or has no room or nothing to say.
-    fn failed(&mut self, error: &io::Error) {
-        if !is_passing(error) {
-            self.link.lose();
+    /// Sends as much of a line as the port takes.
+    fn write(&mut self) {
+        let Some(port) = self.link.open() else { return };
+        match port.write(self.sent.rest()) {
+            Ok(count) => self.sent.took(count),
+            Err(error) => self.link.failed(&error),
         }
     }
 }
@@ -120,31 +122,32 @@ impl Driver for Port {
     type Error = core::convert::Infallible;
 
     fn send(&mut self, frame: &Frame) -> Result<bool, Self::Error> {
-        self.reopen();
-        let Some(port) = self.link.open() else { return Ok(false) };
-        let line = Line::of(frame);
-        match port.write(line.bytes()) {
-            // A line that was cut is none, and the adapter refuses it.
-            Ok(count) => Ok(count == line.bytes().len()),
-            Err(error) => {
-                self.failed(&error);
-                Ok(false)
-            }
+        self.go_on();
+        if !self.sent.rest().is_empty() {
+            return Ok(false);
         }
+        self.sent = Line::of(frame);
+        self.write();
+        // A line that has begun is ended later, so no other one joins it.
+        let has_begun = self.sent.has_begun();
+        if !has_begun {
+            self.sent = Line::NONE;
+        }
+        Ok(has_begun)
     }
 
     fn receive(&mut self) -> Result<Option<Frame>, Self::Error> {
-        self.reopen();
+        self.go_on();
         loop {
             if let Some(frame) = self.lines.frame() {
                 return Ok(Some(frame));
             }
             let Some(port) = self.link.open() else { return Ok(None) };
             match port.read(self.lines.room()) {
-                Ok(0) => self.failed(&io::ErrorKind::UnexpectedEof.into()),
+                Ok(0) => self.link.lose(),
                 Ok(count) => self.lines.took(count),
                 Err(error) => {
-                    self.failed(&error);
+                    self.link.failed(&error);
                     return Ok(None);
                 }
             }
@@ -166,8 +169,8 @@ fn opened(path: &PathBuf, rate: BitRate) -> io::Result<File> {
         settings.make_raw();
         tcsetattr(&port, OptionalActions::Now, &settings)?;
     }
-    // A channel that is open takes no bit rate.
-    for command in [b"C\r", rate.command(), b"O\r"] {
+    // The first carriage return ends what another program has left. A channel that is open takes no bit rate.
+    for command in [b"\rC\r", rate.command(), b"O\r"] {
         port.write_all(command)?;
     }
     Ok(port)

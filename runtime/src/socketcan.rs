@@ -11,10 +11,12 @@
 //! ```
 //!
 //! The bit rate is a setting of the interface: `ip link set can0 up type can bitrate 125000 restart-ms 100`. With
-//! `restart-ms` the kernel starts a controller again that has gone off the bus. Without, it stays off.
+//! `restart-ms` the kernel starts a controller again that has gone off the bus. Without, it stays off, and only the
+//! silence of the modules tells that: the port counts as off the bus for half a second, since the kernel opens an
+//! interface whose controller is off.
 //!
-//! An interface that is down, or whose controller has gone off the bus, takes no frame. It is opened again as soon as it
-//! is there. Other programs on this machine see what is sent, such as candump. The port itself does not get it back.
+//! An interface that is down takes no frame. It is opened again as soon as it is there. Other programs on this machine
+//! see what is sent, such as candump. The port itself does not get it back.
 
 #[cfg(test)]
 mod tests;
@@ -24,12 +26,11 @@ use std::string::String;
 
 use ::socketcan::errors::CAN_ERR_BUSOFF;
 use ::socketcan::{CanDataFrame, CanFrame, CanSocket, Socket, SocketOptions};
-use rustix::io::Errno;
 
 use crate::Frame;
 use crate::client::Bus;
 use crate::frame::classic;
-use crate::link::{Link, is_passing};
+use crate::link::Link;
 use crate::station::Driver;
 
 /// A CAN interface of Linux.
@@ -51,11 +52,6 @@ impl Port {
         Ok(Self { name, link })
     }
 
-    /// Tests whether the interface is there, and on the bus.
-    pub const fn is_there(&self) -> bool {
-        self.link.is_there()
-    }
-
     /// Waits until something comes, or until this time has passed.
     pub fn wait(&self, milliseconds: u32) {
         self.link.wait(milliseconds);
@@ -65,13 +61,6 @@ impl Port {
     fn socket(&mut self) -> Option<&mut CanSocket> {
         self.link.reopen(|| opened(&self.name));
         self.link.open()
-    }
-
-    /// Takes what has happened to the interface: it has gone, or has no room or nothing to say.
-    fn failed(&mut self, error: &io::Error) {
-        if !is_passing(error) && !is_full(error) {
-            self.link.lose();
-        }
     }
 }
 
@@ -83,7 +72,7 @@ impl Driver for Port {
         match socket.write_frame(&frame) {
             Ok(()) => Ok(true),
             Err(error) => {
-                self.failed(&error);
+                self.link.failed(&error);
                 Ok(false)
             }
         }
@@ -96,7 +85,7 @@ impl Driver for Port {
                 Ok(News::BusOff) => self.link.lose(),
                 Ok(News::Nothing) => {}
                 Err(error) => {
-                    self.failed(&error);
+                    self.link.failed(&error);
                     return Ok(None);
                 }
             }
@@ -127,11 +116,6 @@ impl News {
             CanFrame::Error(_) | CanFrame::Remote(_) => Self::Nothing,
         }
     }
-}
-
-/// Tests whether the interface has no room: its queue is full, or its controller has no bus to empty it to.
-fn is_full(error: &io::Error) -> bool {
-    error.raw_os_error() == Some(Errno::NOBUFS.raw_os_error())
 }
 
 /// Opens an interface that is up. It reports when the controller goes off the bus.

@@ -316,6 +316,9 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Notes that the bus is on or off. While it is off, nothing is sent, and no request is lost. A module that was not
     /// heard in time meanwhile is told first what the program wants of it.
     pub fn bus(&mut self, bus: Bus, now: u32) {
+        if bus == self.client.bus_told() {
+            return;
+        }
         let now = self.note(now);
         self.client.bus(bus, now);
     }

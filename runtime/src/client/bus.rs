@@ -42,6 +42,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         entry.be_led_again();
     }
 
+    /// Returns what was told of the bus.
+    pub(crate) const fn bus_told(&self) -> Bus {
+        self.bus
+    }
+
     /// Notes that the bus is on or off. It is on at first.
     ///
     /// While it is off, nothing is sent, so no request loses a try or is lost, and no module falls silent. What waits for

@@ -10,12 +10,17 @@ const LONGEST: usize = 31;
 pub struct Line {
     bytes: [u8; LONGEST],
     length: usize,
+    /// How much of it was sent.
+    sent: usize,
 }
 
 impl Line {
+    /// Nothing is to be sent.
+    pub const NONE: Self = Self { bytes: [b'\r'; LONGEST], length: 0, sent: 0 };
+
     /// Returns the line of a frame.
     pub fn of(frame: &Frame) -> Self {
-        let mut line = Self { bytes: [b'\r'; LONGEST], length: 0 };
+        let mut line = Self::NONE;
         let is_extended = embedded_can::Frame::is_extended(frame);
         line.push(if is_extended { b'T' } else { b't' });
         for digit in (0..if is_extended { 8 } else { 3 }).rev() {
@@ -31,9 +36,19 @@ impl Line {
         line
     }
 
-    /// Returns the line, with the carriage return.
-    pub fn bytes(&self) -> &[u8] {
-        self.bytes.get(..self.length).unwrap_or_default()
+    /// Returns what was not sent, with the carriage return.
+    pub fn rest(&self) -> &[u8] {
+        self.bytes.get(self.sent..self.length).unwrap_or_default()
+    }
+
+    /// Notes how many more bytes were sent.
+    pub const fn took(&mut self, count: usize) {
+        self.sent = self.sent.saturating_add(count);
+    }
+
+    /// Tests whether a part of it was sent.
+    pub const fn has_begun(&self) -> bool {
+        self.sent > 0
     }
 
     fn push(&mut self, byte: u8) {
@@ -149,10 +164,10 @@ mod tests {
     fn a_frame_is_a_line_of_the_manual() {
         // t100 with two bytes, and T00000100 without: the LAWICEL CAN232 manual.
         let short = Frame::new_raw(0x100, false, [0x11, 0x33, 0, 0, 0, 0, 0, 0], 2);
-        assert_eq!(Line::of(&short).bytes(), b"t10021133\r");
+        assert_eq!(Line::of(&short).rest(), b"t10021133\r");
         let long = Frame::new_raw(0x0284_F003, true, [0xAB, 0, 2, 0, 0x16, 0, 0x40, 0xFF], 8);
-        assert_eq!(Line::of(&long).bytes(), b"T0284F0038AB000200160040FF\r");
-        assert_eq!(Line::of(&Frame::new_raw(0x100, true, [0; 8], 0)).bytes(), b"T000001000\r");
+        assert_eq!(Line::of(&long).rest(), b"T0284F0038AB000200160040FF\r");
+        assert_eq!(Line::of(&Frame::new_raw(0x100, true, [0; 8], 0)).rest(), b"T000001000\r");
     }
 
     #[test]

@@ -52,8 +52,8 @@ fn frame() -> Frame {
 fn a_port_opens_the_channel_and_carries_frames_both_ways() {
     let (mut adapter, path) = adapter();
     let mut port = Port::open(path, BitRate::Kbit125).expect("the pty is there");
-    is_told(&mut adapter, "C\rS4\rO\r");
-    assert!(port.is_there());
+    is_told(&mut adapter, "\rC\rS4\rO\r");
+    assert_eq!(port.bus(), Bus::On);
     assert_eq!(port.send(&frame()), Ok(true));
     is_told(&mut adapter, "T0284F0038AB000200160040FF\r");
     assert_eq!(port.receive(), Ok(None));
@@ -72,7 +72,7 @@ fn each_bit_rate_has_its_number() {
     {
         let (mut adapter, path) = adapter();
         let port = Port::open(path, rate).expect("the pty is there");
-        is_told(&mut adapter, &std::format!("C\rS{number}\rO\r"));
+        is_told(&mut adapter, &std::format!("\rC\rS{number}\rO\r"));
         drop(port);
     }
 }
@@ -97,17 +97,49 @@ fn an_adapter_that_has_gone_takes_nothing_until_it_is_back() {
     let mut port = Port::open(&link, BitRate::Kbit500).expect("the pty is there");
     drop(adapter);
     assert_eq!(port.receive(), Ok(None));
-    assert_eq!((port.is_there(), port.bus(), port.send(&frame())), (false, Bus::Off, Ok(false)));
+    assert_eq!((port.bus(), port.send(&frame())), (Bus::Off, Ok(false)));
     let (mut back, path) = self::adapter();
     std::fs::remove_file(&link).expect("it is there");
     std::os::unix::fs::symlink(&path, &link).expect("the folder can be written");
     // It is not looked for again at once.
-    assert_eq!((port.send(&frame()), port.is_there()), (Ok(false), false));
+    assert_eq!((port.send(&frame()), port.bus()), (Ok(false), Bus::Off));
     port.wait(10_000);
     assert_eq!(port.send(&frame()), Ok(true));
     assert_eq!(port.bus(), Bus::On);
-    is_told(&mut back, "C\rS6\rO\rT0284F0038AB000200160040FF\r");
+    is_told(&mut back, "\rC\rS6\rO\rT0284F0038AB000200160040FF\r");
     std::fs::remove_file(&link).expect("it is there");
+}
+
+#[test]
+fn a_line_that_the_port_takes_in_part_is_ended_before_the_next_one() {
+    let (mut adapter, path) = adapter();
+    let mut port = Port::open(path, BitRate::Kbit500).expect("the pty is there");
+    is_told(&mut adapter, "\rC\rS6\rO\r");
+    let line = "T0284F0038AB000200160040FF\r";
+    let mut bytes = vec![0; 5];
+    let mut taken = 0;
+    // The pty takes some thousand bytes, of which five are read in each turn, so lines are cut at any place.
+    for _ in 0..2000 {
+        taken += usize::from(port.send(&frame()) == Ok(true));
+        if taken > 100 && bytes.len() < 20_000 {
+            let from = bytes.len();
+            bytes.resize(from + 5, 0);
+            let count = adapter.read(&mut bytes[from..]).expect("there is something");
+            bytes.truncate(from + count);
+        }
+    }
+    fcntl_setfl(&adapter, OFlags::NONBLOCK).expect("it is open");
+    while port.receive() == Ok(None) {
+        let from = bytes.len();
+        bytes.resize(from + 4096, 0);
+        let count = adapter.read(&mut bytes[from..]).unwrap_or_default();
+        bytes.truncate(from + count);
+        if count == 0 {
+            break;
+        }
+    }
+    assert!((101..2000).contains(&taken), "{taken}");
+    assert_eq!(String::from_utf8_lossy(&bytes[5..]), line.repeat(taken));
 }
 
 #[test]

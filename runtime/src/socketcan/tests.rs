@@ -54,7 +54,7 @@ fn a_port_carries_data_frames_both_ways() {
     let received: [_; 4] = core::array::from_fn(|_| port.receive().map(|frame| frame.map(|frame| frame.to_string())));
     let expected = [Some("0284F003#0909090909090909"), Some("00000000#"), Some("123#A5"), None];
     assert_eq!(received, expected.map(|text| Ok(text.map(str::to_string))));
-    assert_eq!((port.is_there(), port.bus()), (true, Bus::On));
+    assert_eq!(port.bus(), Bus::On);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_controller_that_goes_off_the_bus_takes_nothing() {
     kernel.send(&raw(ERROR | 0x40, &[0; 8])).expect("there is room");
     kernel.send(&raw(0x123, &[0xA5])).expect("there is room");
     assert_eq!(port.receive(), Ok(None));
-    assert_eq!((port.is_there(), port.bus()), (false, Bus::Off));
+    assert_eq!(port.bus(), Bus::Off);
     assert_eq!((port.send(&frame()), told(&kernel)), (Ok(false), None));
 }
 
@@ -85,10 +85,10 @@ fn an_interface_without_room_takes_nothing_and_stays() {
     let (mut port, _kernel) = port();
     let taken = (0..100_000).take_while(|_| port.send(&frame()) == Ok(true)).count();
     assert!(taken < 100_000, "the queue is never full");
-    assert!(port.is_there());
+    assert_eq!(port.bus(), Bus::On);
     // 105 is ENOBUFS, by which the kernel says that the queue of the interface is full.
-    port.failed(&io::Error::from_raw_os_error(105));
-    assert!(port.is_there());
+    port.link.failed(&io::Error::from_raw_os_error(105));
+    assert_eq!(port.bus(), Bus::On);
 }
 
 #[test]
@@ -96,17 +96,17 @@ fn an_interface_that_goes_down_or_away_takes_nothing() {
     // 100 is ENETDOWN, 6 is ENXIO, and 19 is ENODEV.
     for error in [100, 6, 19] {
         let (mut port, kernel) = port();
-        port.failed(&io::Error::from_raw_os_error(error));
-        assert_eq!((port.is_there(), port.bus()), (false, Bus::Off), "{error}");
+        port.link.failed(&io::Error::from_raw_os_error(error));
+        assert_eq!(port.bus(), Bus::Off, "{error}");
         assert_eq!((port.send(&frame()), port.receive(), told(&kernel)), (Ok(false), Ok(None), None));
     }
     let (mut gone, kernel) = port();
     drop(kernel);
-    assert_eq!((gone.send(&frame()), gone.is_there()), (Ok(false), false));
+    assert_eq!((gone.send(&frame()), gone.bus()), (Ok(false), Bus::Off));
     // Nothing comes any more from the other end of a stream that has gone.
     let (_, socket) = UnixStream::pair().expect("a pair of sockets");
     let mut ended = port_at(socket);
-    assert_eq!((ended.receive(), ended.is_there()), (Ok(None), false));
+    assert_eq!((ended.receive(), ended.bus()), (Ok(None), Bus::Off));
 }
 
 #[test]

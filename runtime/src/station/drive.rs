@@ -1,7 +1,6 @@
 //! What carries the frames of a station: a driver that does not block, or asynchronous functions.
 
 use super::{Driver, Event, Station, Step};
-use crate::client::Bus;
 use crate::clock::time_left;
 use crate::{Addressed, Frame, Quantities};
 
@@ -11,14 +10,12 @@ pub struct Drive<D> {
     driver: D,
     /// When all was handed over that had come. What comes after that is not older.
     since: Option<u32>,
-    /// What the station was told of the bus.
-    bus: Bus,
 }
 
 impl<D: Driver> Drive<D> {
     /// Returns what carries frames by a driver.
     pub const fn new(driver: D) -> Self {
-        Self { driver, since: None, bus: Bus::On }
+        Self { driver, since: None }
     }
 
     /// Returns the driver.
@@ -27,11 +24,11 @@ impl<D: Driver> Drive<D> {
     }
 
     /// Hands over what has come and what the driver knows of the bus, sends what is due, and tells what has happened.
-    /// Returns when it is to be called again
-    /// at the latest, if nothing comes before.
+    /// Returns when it is to be called again at the latest, if nothing comes before.
     ///
     /// No driver says when a frame came. So each counts as old as it can be. If the program stands still for long, what
-    /// the driver has kept meanwhile does not count as new.
+    /// the driver has kept meanwhile does not count as new. What came before the first turn can be of any age, so it is
+    /// dropped.
     ///
     /// # Errors
     ///
@@ -47,14 +44,11 @@ impl<D: Driver> Drive<D> {
     {
         loop {
             let now = clock();
-            let since = self.since.replace(now).unwrap_or(now);
             while let Some(frame) = self.driver.receive()? {
-                station.handle(&frame, since);
+                self.since.into_iter().for_each(|since| station.handle(&frame, since));
             }
-            let bus = self.driver.bus();
-            if core::mem::replace(&mut self.bus, bus) != bus {
-                station.bus(bus, now);
-            }
+            self.since = Some(now);
+            station.bus(self.driver.bus(), now);
             match station.poll(now) {
                 Step::Send { ticket, frame } => {
                     let sent = self.driver.send(&frame);
@@ -75,7 +69,8 @@ impl<D: Driver> Drive<D> {
 /// `send` returns whether the driver has taken the frame. `receive` waits for a frame, for this number of milliseconds at
 /// most. With 0 it returns only a frame that has come. With embassy it is
 /// `with_timeout(Duration::from_millis(wait.into()), can.read())`, and with tokio the same by `timeout`. It must not
-/// give frames back that the program has sent itself.
+/// give frames back that the program has sent itself. What came before the first call is dropped, since it can be of any
+/// age.
 pub async fn pump<P, const M: usize, const G: usize, const R: usize>(
     station: &mut Station<P, M, G, R>,
     clock: impl Fn() -> u32,
@@ -85,6 +80,7 @@ pub async fn pump<P, const M: usize, const G: usize, const R: usize>(
 ) where
     P: Quantities + Addressed,
 {
+    while receive(0).await.is_some() {}
     let mut since = clock();
     loop {
         let now = clock();

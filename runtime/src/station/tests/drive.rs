@@ -422,3 +422,35 @@ fn what_comes_while_the_pump_waits_is_as_old_as_it_can_be() {
     // The switch-off of charger 1 is lost at 100 ms.
     assert_eq!(station.voltage_mv(1, 3900), Known::Stale { value: 400_000, since: 200 });
 }
+
+#[test]
+fn what_came_before_the_first_turn_says_nothing_of_a_module() {
+    let report = reply(10, 1, [0x0F, 0xA0, 0, 0]);
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    wire.charger.borrow_mut().is_there = false;
+    wire.coming.borrow_mut().push_back((0, report));
+    let mut drive = Drive::new(NonBlocking(&wire));
+    assert_eq!(turned(&wire, &mut station, &mut drive, 10), []);
+    assert_eq!((wire.coming.borrow().len(), station.voltage_mv(1, 10)), (0, Known::Unknown));
+    wire.coming.borrow_mut().push_back((10, report));
+    turned(&wire, &mut station, &mut drive, 20);
+    assert_eq!(station.voltage_mv(1, 20), Known::Fresh(400_000));
+}
+
+#[test]
+fn another_drive_tells_that_the_bus_is_on_again() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    let mut lost = Drive::new(Knowing { wire: &wire, bus: Bus::Off, asked: 0 });
+    assert_eq!(turned(&wire, &mut station, &mut lost, 2000), []);
+    let mut opened = Drive::new(NonBlocking(&wire));
+    assert_eq!(turned(&wire, &mut station, &mut opened, 4000), FOUND);
+}
+
+#[test]
+fn what_came_before_the_pump_begins_says_nothing_of_a_module() {
+    let (wire, mut station) = (Wire::new(), lone(Found::Off));
+    wire.charger.borrow_mut().is_there = false;
+    wire.coming.borrow_mut().push_back((0, reply(10, 1, [0x0F, 0xA0, 0, 0])));
+    pumped(&wire, &mut station, 20);
+    assert_eq!(station.voltage_mv(1, 20), Known::Unknown);
+}
