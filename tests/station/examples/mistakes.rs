@@ -120,6 +120,30 @@ const MISTAKES: &[Mistake] = &[
         right: "        self.ahead = self.ahead.wrapping_add(back);\n",
         wrong: "",
     },
+    Mistake {
+        name: "what waits since the last round is sent, too",
+        file: ROUND,
+        right: "        module.once.take().into_iter().for_each(|ticket| self.client.cancel(ticket));\n",
+        wrong: "",
+    },
+    Mistake {
+        name: "a group has more current than it may",
+        file: ROUND,
+        right: "let current = current.min(share);",
+        wrong: "let current = current.min(share.max(i32::MAX));",
+    },
+    Mistake {
+        name: "a current rises at once",
+        file: ROUND,
+        right: "current.min(module.step(limits.rise_ma, round, now))",
+        wrong: "current.max(module.step(limits.rise_ma, round, now))",
+    },
+    Mistake {
+        name: "what is taken back from another controller has its old current at once",
+        file: "runtime/src/station/hear.rs",
+        right: "                module.due = None;\n                module.rise_anew();\n",
+        wrong: "                module.due = None;\n",
+    },
 ];
 
 fn main() -> ExitCode {
@@ -168,7 +192,7 @@ fn verdict(mistake: &Mistake, root: &Path, copy: &Path) -> io::Result<Option<Str
     match (output.status.success(), said.starts_with("seed ")) {
         (true, _) => Ok(None),
         (false, true) => Ok(Some(said)),
-        (false, false) => Err(io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned())),
+        (false, false) => Err(io::Error::other(format!("{said}\n{}", String::from_utf8_lossy(&output.stderr)))),
     }
 }
 

@@ -5,27 +5,33 @@ use std::ops::AddAssign;
 
 use canspec_runtime::sim::Tally;
 
-/// How often what happened, in order of the names.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Counts([u64; NAMES.len()]);
-
-const NAMES: [&str; 31] = [
+/// What happens in each run.
+const WORK: [&str; 9] = [
     "runs",
     "minutes",
     "frames sent",
     "frames heard",
+    "milliseconds of delay",
+    "stops",
+    "modules that miss or refuse the switch-offs of a round",
+    "requests answered or refused",
+    "requests lost",
+];
+
+/// What fails, and must do so at least once in ten minutes on average.
+const FAULTS: [&str; 23] = [
     "frames lost",
     "frames repeated",
     "frames of a wrong length",
     "refusals",
-    "milliseconds of delay",
-    "restarts",
-    "deaths",
+    "modules that restart",
+    "modules that die",
     "modules that hear something after silence",
     "modules that start by themselves after silence",
     "frames that come when the bus is back",
     "frames that are lost while it is away",
     "second answers of one address",
+    "buses away, while the driver refuses frames",
     "buses away, which the driver says",
     "buses away, while the driver keeps frames",
     "buses away, while the driver drops frames",
@@ -37,32 +43,30 @@ const NAMES: [&str; 31] = [
     "modules with the address of another one",
     "modules whose answers to one request are always too short",
     "modules that always refuse one request",
-    "stops",
-    "modules that miss or refuse the switch-offs of a round",
-    "requests answered or refused",
-    "requests lost",
 ];
 
-/// The names of what fails, and must do so at least once in ten minutes on average.
-const FAULTS: core::ops::Range<usize> = 4..27;
+/// How often what happened, in order of the names.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts([u64; WORK.len() + FAULTS.len()]);
+
+/// Returns the names of what is counted.
+fn names() -> impl Iterator<Item = &'static str> {
+    WORK.into_iter().chain(FAULTS)
+}
 
 impl Counts {
     pub fn add(&mut self, name: &str, count: u64) {
-        let place = NAMES.iter().position(|known| *known == name).expect("it is one of the names");
-        self.0[place] += count;
+        self.0[place(name)] += count;
     }
 
     /// Adds what a bench has counted.
     pub fn add_tally(&mut self, tally: &Tally) {
-        let Tally { lost, twice, broken, refused, delay, restarts, deaths, wakes, doubles, blocked, delayed, .. } =
-            *tally;
+        let Tally { lost, twice, broken, refused, delay, wakes, doubles, blocked, delayed, .. } = *tally;
         self.add("frames lost", lost);
         self.add("frames repeated", twice);
         self.add("frames of a wrong length", broken);
         self.add("refusals", refused);
         self.add("milliseconds of delay", delay);
-        self.add("restarts", restarts);
-        self.add("deaths", deaths);
         self.add("modules that hear something after silence", wakes);
         self.add("frames that come when the bus is back", delayed);
         self.add("frames that are lost while it is away", blocked);
@@ -71,9 +75,14 @@ impl Counts {
 
     /// Returns what has failed less often than once in ten minutes, on average of many runs.
     pub fn too_rare(&self) -> Option<&'static str> {
-        let [_, minutes, ..] = self.0;
-        FAULTS.into_iter().find(|place| self.0[*place] * 10 < minutes).map(|place| NAMES[place])
+        let minutes = self.0[place("minutes")];
+        FAULTS.into_iter().find(|fault| self.0[place(fault)] * 10 < minutes)
     }
+}
+
+/// Returns where something is counted.
+fn place(name: &str) -> usize {
+    names().position(|known| known == name).expect("it is one of the names")
 }
 
 impl AddAssign for Counts {
@@ -84,6 +93,6 @@ impl AddAssign for Counts {
 
 impl fmt::Display for Counts {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        NAMES.iter().zip(self.0).try_for_each(|(name, count)| writeln!(formatter, "{count:>12} {name}"))
+        names().zip(self.0).try_for_each(|(name, count)| writeln!(formatter, "{count:>12} {name}"))
     }
 }

@@ -25,16 +25,16 @@ mod requests;
 mod trouble;
 mod watch;
 
-use canspec_runtime::client::Output;
+use canspec_runtime::client::{self, Output};
 use canspec_runtime::sim::{Faults, Random};
 use canspec_runtime::station::Event;
 use canspec_runtime::{Addressed, Exchange, Quantities, Quantity, Request};
 use canspec_station::{ROUND, pace};
 
-use crate::bus::rules;
+use crate::bus::{Charger, ONCE, rules};
 pub use counts::Counts;
 use fleet::Fleet;
-use trouble::{Change, OTHERS, TROUBLES, Trouble};
+use trouble::{Change, Kind, Other, Trouble, one_of};
 use watch::{TURN, Watch};
 
 /// How long a cycle delivers, and is left in peace. Between that it is stopped while modules fail.
@@ -113,6 +113,7 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         let quiet = self.fleet.bus.now + Trouble::longest(watchdog) + QUIET;
         // A module can miss each switch-off of these rounds. The watch sees that it is told.
         self.pass(quiet)?;
+        self.count_fates(start);
         self.twin_leaves();
         self.nodes.clone().into_iter().for_each(|node| {
             let faults = self.fleet.bus.faults(node);
@@ -162,18 +163,20 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         let now = bus.now;
         match self.trouble.change(now) {
             Some(Change::Begins) => {
-                self.counts.add(TROUBLES[self.trouble.kind], 1);
-                (bus.is_down, bus.is_stalled) = (self.trouble.is_away(), self.trouble.is_still());
+                let kind = self.trouble.kind;
+                self.counts.add(kind.name(), 1);
+                (bus.is_down, bus.is_stalled) = (kind.is_away(), kind == Kind::Still);
                 self.trouble.outage(now).into_iter().for_each(|outage| bus.bench.cut(outage));
-                if self.trouble.is_kept() {
-                    self.watch.kept = Some((now, self.trouble.ends));
-                }
-                if self.trouble.is_clock() {
-                    bus.ahead = bus.ahead.wrapping_sub(self.random.below(60_000));
+                match kind {
+                    Kind::Off => bus.station.bus(client::Bus::Off, bus.clock()),
+                    Kind::Kept => self.watch.kept = Some((now, self.trouble.ends)),
+                    Kind::Clock => bus.ahead = bus.ahead.wrapping_sub(self.random.below(60_000)),
+                    Kind::Refused | Kind::Dropped | Kind::Still => {}
                 }
             }
             Some(Change::Ends) => {
                 (bus.is_down, bus.is_stalled) = (false, false);
+                bus.station.bus(client::Bus::On, bus.clock());
                 bus.bench.no_other_controllers();
             }
             None => {}
@@ -193,31 +196,26 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
 
     /// Lets another controller do something with a module.
     fn another_controller(&mut self) {
-        let kind = self.trouble.other;
-        let node = self.any_node();
+        let other = self.trouble.other;
+        let node = one_of(&mut self.random, &self.nodes);
         let target = P::module(node.into()).expect("a module");
         let one = |requests: Option<Request<P, ()>>| *requests.expect("there is a message").frame();
         let read = P::read(&[Quantity::OUTPUT_VOLTAGE], target).expect("it is read").next();
         let switch = P::set(&[(Quantity::DELIVERING, 1)], target).expect("it is legal").next();
-        let (frame, every) = match kind {
-            0 => (one(read), 100 + self.random.below(900)),
-            1 => (one(Some(self.sets(node, self.fleet.other_mv))), u32::MAX / 4),
-            _ => (one(switch), u32::MAX / 4),
+        let (frame, every) = match other {
+            Other::Reads => (one(read), 100 + self.random.below(900)),
+            Other::Sets => (one(Some(self.sets(node, self.fleet.other_mv))), ONCE),
+            Other::SwitchesOn => (one(switch), ONCE),
         };
         let bus = &mut self.fleet.bus;
-        if kind > 0 {
+        if other != Other::Reads {
             bus.bench.no_other_controllers();
             self.rivals += 1;
         }
-        self.has_given_way = kind > 0 && self.watch.stopped.is_none();
-        self.watch.woken = (kind > 1).then_some(node).or(self.watch.woken);
+        self.has_given_way = other != Other::Reads && self.watch.stopped.is_none();
+        self.watch.woken = (other == Other::SwitchesOn).then_some(node).or(self.watch.woken);
         bus.bench.another_controller(frame, every, bus.now).expect("there is no other one");
-        self.counts.add(OTHERS[kind], 1);
-    }
-
-    fn any_node(&mut self) -> u8 {
-        let count = u32::try_from(self.nodes.len()).expect("few");
-        self.nodes[usize::try_from(self.random.below(count)).expect("few")]
+        self.counts.add(other.name(), 1);
     }
 
     /// Sets the voltage of a module, and its current if that can be set.
@@ -289,12 +287,11 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
     fn draw_lasting(&mut self, cycle: u32) {
         let messages: Vec<_> = messages::<P>();
         let fit = if cycle == 0 { 3..self.nodes.len() } else { 0..self.nodes.len() - 1 };
-        let mut draw =
-            |count: usize| usize::try_from(self.random.below(u32::try_from(count).expect("few"))).expect("few");
-        let places = [0; 2].map(|_| fit.start + draw(fit.len()));
-        let [short, refused] = [0; 2].map(|_| messages[draw(messages.len())]);
-        self.fleet.bus.faults(self.nodes[places[0]]).always_short = Some(short);
-        self.fleet.bus.faults(self.nodes[places[1]]).always_refused = Some(refused);
+        let fit = self.nodes[fit].to_vec();
+        let [first, second] = [0; 2].map(|_| one_of(&mut self.random, &fit));
+        let [short, refused] = [0; 2].map(|_| one_of(&mut self.random, &messages));
+        self.fleet.bus.faults(first).always_short = Some(short);
+        self.fleet.bus.faults(second).always_refused = Some(refused);
         self.counts.add("modules whose answers to one request are always too short", 1);
         self.counts.add("modules that always refuse one request", 1);
     }
@@ -337,14 +334,34 @@ impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usiz
         self.watch.shared = None;
     }
 
-    /// Tests that each module delivers that has had the time, and refuses nothing for ever.
+    /// Counts the modules that have started anew by themselves since a time, and those that have died.
+    fn count_fates(&mut self, start: u32) {
+        let now = self.fleet.bus.now;
+        for node in self.nodes.clone() {
+            let has_died = watch::is_dead(self.fleet.bus.faults(node), now);
+            self.counts.add("modules that restart", u64::from(self.fleet.bus.device(node).started > start));
+            self.counts.add("modules that die", u64::from(has_died));
+        }
+    }
+
+    /// Returns the current that each module of a full group has at least, if currents are set, in mA.
+    fn share_ma(&self) -> Option<i32> {
+        self.fleet.point.current_ma.map(|current_ma| current_ma.min(self.fleet.limits.group_ma / 4))
+    }
+
+    /// Tests that each module delivers what it is to that has had the time, and refuses nothing for ever.
     fn check_output(&mut self) -> Result<(), String> {
         for node in self.nodes.clone() {
             let Faults { dies, always_short, always_refused, .. } = *self.fleet.bus.faults(node);
             let device = *self.fleet.bus.device(node);
             let is_fit = (dies, always_short, always_refused) == (None, None, None);
-            if is_fit && device.started + SETTLED < self.fleet.bus.now && !device.is_on {
-                return Err(format!("module {node} does not deliver"));
+            let has_settled = device.started + SETTLED < self.fleet.bus.now;
+            let delivers = device.is_on
+                && device.voltage_mv == Some(self.fleet.point.voltage_mv)
+                && device.current_ma >= self.share_ma();
+            if is_fit && has_settled && !delivers {
+                let Charger { is_on, voltage_mv, current_ma, .. } = device;
+                return Err(format!("module {node} delivers {voltage_mv:?} mV and {current_ma:?} mA, on: {is_on}"));
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use canspec_runtime::client::{Client, Heard, Step, Ticket};
-use canspec_runtime::sim::Event;
+use canspec_runtime::sim::{Complaint, Event};
 use canspec_runtime::{Addressed, Quantities, Quantity, Request};
 use canspec_station::pace;
 
@@ -12,14 +12,20 @@ use super::Run;
 impl<P: Quantities + Addressed<Target: PartialEq>, const N: usize, const G: usize> Run<P, N, G> {
     /// Asks modules at random while they fail. Each request ends once, by its own answer or after all tries.
     pub fn requests(&mut self) -> Result<(), String> {
-        let start = self.fleet.bus.now;
+        // The last frame of the station can have been sent just now.
+        let start = self.fleet.bus.now + pace::<P>().gap;
         self.draw_faults(0);
         self.nodes.clone().into_iter().for_each(|node| self.answer_all(node));
         let mut client: Client<P, 12> = Client::new(pace::<P>());
         let mut asked: HashMap<Ticket, Asked> = HashMap::new();
         for now in start..start + 20_000 {
             while let Some(event) = self.fleet.bus.bench.poll(now) {
-                let Event::Frame { frame, at } = event else { continue };
+                let (frame, at) = match event {
+                    Event::Frame { frame, at } => (frame, at),
+                    // This client does not feed modules.
+                    Event::Complaint(Complaint::Unfed { .. }) => continue,
+                    Event::Complaint(complaint) => return Err(complaint.to_string()),
+                };
                 match client.handle(&frame, at) {
                     Heard::Answer { ticket, received } => {
                         let said = received.setting(Quantity::OUTPUT_VOLTAGE);
