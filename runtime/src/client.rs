@@ -79,16 +79,13 @@ pub use step::Step;
 
 use core::num::NonZeroU32;
 
-use crate::clock::{Steady, has_come};
+use crate::clock::{LONGEST, Steady, has_come};
 use crate::{Protocol, Replies, Request};
 use bus::Sending;
 use entry::{Entry, Urgency};
 use group::Groups;
 use health::Health;
 use quiet::Quiet;
-
-/// The longest time in milliseconds after which a later time is still told from an earlier one.
-const LONGEST: u32 = (1 << 31) - 1;
 
 /// Asks devices, with room for `N` requests, and for `G` groups whose members it knows.
 ///
@@ -224,6 +221,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Tests whether a request is [held](Self::hold).
     pub(crate) fn holds(&self, ticket: Ticket) -> bool {
         self.entries.iter().flatten().any(|entry| entry.ticket == ticket && entry.is_held())
+    }
+
+    /// Returns how many requests are [held](Self::hold) that go to a module.
+    pub(crate) fn held_by(&self, node: u8) -> usize {
+        self.entries.iter().flatten().filter(|entry| entry.node() == Some(node) && entry.is_held()).count()
     }
 
     /// Returns the modules that are silent.

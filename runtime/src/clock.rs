@@ -15,6 +15,9 @@
 //! assert_eq!(later_of(start, now), now);
 //! ```
 
+/// The longest time in milliseconds after which a later time is still told from an earlier one.
+pub(crate) const LONGEST: u32 = (1 << 31) - 1;
+
 /// Tests whether a time has come. A time counts as future if it is less than 2^31 ms ahead.
 pub fn has_come(time: u32, now: u32) -> bool {
     now.wrapping_sub(time) < 1 << 31

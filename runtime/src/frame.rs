@@ -114,6 +114,17 @@ impl Frame {
     pub(crate) fn has_length(&self, length: usize, several: &[u8]) -> bool {
         if several.is_empty() { self.length() == length } else { several.contains(&self.length) }
     }
+
+    /// Writes the identifier: three digits, or eight of an extended one.
+    pub(crate) fn write_id(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = if self.extended { 8 } else { 3 };
+        write!(formatter, "{:0digits$X}", self.id)
+    }
+
+    /// Writes the data, two digits of each byte.
+    pub(crate) fn write_data(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        embedded_can::Frame::data(self).iter().try_for_each(|byte| write!(formatter, "{byte:02X}"))
+    }
 }
 
 impl embedded_can::Frame for Frame {
@@ -160,9 +171,9 @@ impl embedded_can::Frame for Frame {
 impl fmt::Display for Frame {
     /// Writes `029C03F0#000B71B000003A98`.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let digits = if self.extended { 8 } else { 3 };
-        write!(formatter, "{:0digits$X}#", self.id)?;
-        embedded_can::Frame::data(self).iter().try_for_each(|byte| write!(formatter, "{byte:02X}"))
+        self.write_id(formatter)?;
+        formatter.write_str("#")?;
+        self.write_data(formatter)
     }
 }
 

@@ -150,6 +150,12 @@ impl<P: Protocol> Received<P> {
         P::node(&self.way()?)
     }
 
+    /// Returns the module that has sent the frame, if the identifier shows it.
+    pub(crate) fn sender(&self) -> Option<u8> {
+        let node = self.node().filter(|_| !self.is_to_module())?;
+        u8::try_from(node).ok()
+    }
+
     /// Returns the reply of this exchange that carries `content`. Encoding tests that it is one.
     pub(crate) const fn reply_with(&self, frame: Frame, content: P) -> Self {
         Self { content, frame, kind: Kind::Reply, is_other: true, ..*self }

@@ -24,13 +24,10 @@
 use core::fmt;
 use core::num::NonZeroU32;
 
-use crate::clock::{earlier, has_come};
+use crate::clock::{LONGEST, earlier, has_come};
 
 #[cfg(test)]
 mod tests;
-
-/// The longest time that is told from one that has passed.
-const LONGEST: u32 = u32::MAX >> 1;
 
 /// Times at which things are due, each with a key, with room for `N` of them.
 #[derive(Clone, Copy, Debug)]

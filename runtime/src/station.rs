@@ -164,7 +164,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if self.has_emergency {
             return Err(Refused::Emergency);
         }
-        let targets = self.modules.iter().filter_map(|module| P::module(module.node.into()));
+        let targets = self.modules.iter().filter_map(|module| P::module(module.node().into()));
         for target in targets {
             fit::allows::<P>(&self.settings, target, point)?;
         }
@@ -227,7 +227,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         group.map_or(Ok(()), |group| self.place_of(group).map(|_| ()))?;
         let now = self.note(now);
         let valid = self.settings.valid;
-        let module = self.modules.iter_mut().find(|module| module.node == node).ok_or(Refused::Address(node))?;
+        let module = self.modules.iter_mut().find(|module| module.node() == node).ok_or(Refused::Address(node))?;
         if module.group == group {
             module.placed = Placed::ByProgram;
             return Ok(());

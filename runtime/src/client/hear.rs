@@ -18,7 +18,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             Err(Problem::Length) => return self.answered_short(frame, received_at),
             Err(problem) => return Heard::Unrecognised(problem),
         };
-        let node = sender(&received);
+        let node = received.sender();
         let (heard, answered) = match self.asking(frame, received_at) {
             Some(place) => self.answered(place, frame, received, received_at),
             None if received.is_to_module() => (Heard::Rival(received), None),
@@ -80,7 +80,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let mut first: Option<(u8, usize)> = None;
         for (place, slot) in self.entries.iter().enumerate() {
             let Some(entry) = slot else { continue };
-            // Of most requests no answer can come.
+            // Most requests wait for nothing.
             if !entry.is_under_way() {
                 continue;
             }
@@ -91,10 +91,4 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
         first.map(|(_, place)| place)
     }
-}
-
-/// Returns the module that has sent a frame, if the identifier shows it.
-fn sender<P: Protocol>(received: &Received<P>) -> Option<u8> {
-    let node = received.node().filter(|_| !received.is_to_module())?;
-    u8::try_from(node).ok()
 }

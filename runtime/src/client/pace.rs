@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use super::LONGEST;
+use crate::clock::LONGEST;
 use crate::{Time, Timing};
 
 /// How fast a client asks, and how long it waits, in milliseconds.

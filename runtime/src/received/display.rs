@@ -15,12 +15,11 @@ impl<P: Protocol> fmt::Display for Received<P> {
         let direction = if self.is_to_module() { "to" } else { "of" };
         write!(formatter, "{} {} {direction} ", exchange.access(), exchange.message())?;
         match self.node() {
-            Some(node) => write!(formatter, "{node}:")?,
-            None if embedded_can::Frame::is_extended(frame) => write!(formatter, "{:08X}:", frame.raw_id())?,
-            None => write!(formatter, "{:03X}:", frame.raw_id())?,
+            Some(node) => write!(formatter, "{node}")?,
+            None => frame.write_id(formatter)?,
         }
-        let data = embedded_can::Frame::data(frame);
-        formatter.write_str(if data.is_empty() { " no data" } else { " " })?;
-        data.iter().try_for_each(|byte| write!(formatter, "{byte:02X}"))
+        let is_empty = embedded_can::Frame::dlc(frame) == 0;
+        formatter.write_str(if is_empty { ": no data" } else { ": " })?;
+        frame.write_data(formatter)
     }
 }

@@ -27,7 +27,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         }
         module.placed = Placed::ByItself;
         if module.group != Some(group) {
-            let (node, left) = (module.node, module.group);
+            let (node, left) = (module.node(), module.group);
             let delivers =
                 |known: &Group<P::Target>| Some(known.number) == left && matches!(known.task, Task::Deliver(_));
             // Nobody may keep it on that does not know of it.
@@ -50,7 +50,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Notes that a module has answered something that cannot be read.
     pub(super) fn speaks(&mut self, ticket: Ticket, at: u32) {
         let node = self.client.node(ticket);
-        let Some(module) = self.modules.iter_mut().find(|module| node == Some(module.node)) else { return };
+        let Some(module) = self.modules.iter_mut().find(|module| node == Some(module.node())) else { return };
         module.lost(ticket);
         module.answers(at);
     }
@@ -58,7 +58,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Puts a module into a group.
     pub(super) fn join(&mut self, node: u8, group: Option<u8>) {
         let Self { client, modules, .. } = self;
-        let Some(module) = modules.iter_mut().find(|module| module.node == node) else { return };
+        let Some(module) = modules.iter_mut().find(|module| module.node() == node) else { return };
         module.tell_anew(client);
         module.group = group;
         self.know_members();
@@ -68,8 +68,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     pub(super) fn know_members(&mut self) {
         let Self { client, modules, groups, .. } = self;
         for group in groups {
-            let members: Nodes =
-                modules.iter().filter(|module| module.hears(group.number)).map(|module| module.node).collect();
+            let members: Nodes = modules.iter().filter(|module| module.hears(group.number)).map(Module::node).collect();
             group.is_heard = !members.is_empty();
             if !group.is_heard {
                 group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
@@ -136,6 +135,6 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 
 /// Returns the module that has sent a frame.
 pub fn sender<'a, P: Protocol>(modules: &'a mut [Module<P>], received: &Received<P>) -> Option<&'a mut Module<P>> {
-    let node = received.node().filter(|_| !received.is_to_module());
-    modules.iter_mut().find(|module| node == Some(module.node.into()))
+    let node = received.sender()?;
+    modules.iter_mut().find(|module| module.node() == node)
 }

@@ -47,7 +47,7 @@ impl<T: Copy> Said<T> {
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
     /// Returns the addresses of the modules that answer.
     pub fn modules(&self) -> impl Iterator<Item = u8> {
-        self.modules.iter().filter(|module| module.heard.is_some()).map(|module| module.node)
+        self.modules.iter().filter(|module| module.heard.is_some()).map(Module::node)
     }
 
     /// Returns the group of a module, if it has said it, or the program.
@@ -126,7 +126,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     }
 
     pub(super) fn module(&self, node: u8) -> Option<&Module<P>> {
-        self.modules.iter().find(|module| module.node == node)
+        self.modules.iter().find(|module| module.node() == node)
     }
 
     fn members(&self, group: u8) -> impl Iterator<Item = &Module<P>> {

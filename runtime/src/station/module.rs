@@ -26,8 +26,6 @@ pub enum Task {
 /// An address, and the module that has it if one was found.
 #[derive(Clone, Copy, Debug)]
 pub struct Module<P: Protocol> {
-    /// The address, as the document counts.
-    pub node: u8,
     /// Its group, if it has said so, or the program.
     pub group: Option<u8>,
     /// Who has said so.
@@ -174,7 +172,6 @@ impl<P: Protocol> Module<P> {
             unmet: Once::No,
         };
         Self {
-            node,
             group: None,
             placed: Placed::Unknown,
             heard: None,
@@ -197,6 +194,11 @@ impl<P: Protocol> Module<P> {
             conflict: Conflict::None,
             told,
         }
+    }
+
+    /// Returns its address, as the document counts.
+    pub const fn node(&self) -> u8 {
+        self.duty.node()
     }
 
     /// Tests whether it hears what goes to a group. One whose group is not known can be in any.
@@ -309,7 +311,7 @@ impl<P: Protocol> Module<P> {
 
     /// Returns what has happened that the program was not told.
     pub fn news(&mut self, valid: u32, now: u32) -> Option<Event> {
-        let node = self.node;
+        let node = self.node();
         let output = self.output(valid, now);
         let (is_found, has_conflict) = (self.heard.is_some(), self.conflict != Conflict::None);
         let told = &mut self.told;

@@ -1,7 +1,7 @@
 //! The requests of a station, and how many there are at a module.
 
 use super::settings::{SetPoint, Settings};
-use crate::{Addressed, Error, Quantities, Quantity, Request};
+use crate::{Addressed, Error, Exchange, Quantities, Quantity, Request};
 
 /// What is read in each round. The first one says whether a module delivers.
 pub const READINGS: [Quantity; 3] = [Quantity::DELIVERING, Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT];
@@ -116,13 +116,13 @@ pub const fn each_round<P: Quantities>() -> usize {
     count
 }
 
-/// Tests whether a message is sent by a path, and by none of its kind before it.
+/// Tests whether a request is sent by a path, and by none of its kind before it.
 const fn is_first<P: Quantities>(index: usize) -> bool {
-    let Some(message) = sent::<P>(index) else { return false };
+    let Some(request) = sent::<P>(index) else { return false };
     let mut earlier = if index < P::READS.len() { 0 } else { P::READS.len() };
     while earlier < index {
         let is_one = match sent::<P>(earlier) {
-            Some(known) => is_same(known, message),
+            Some(known) => is_same(known.message(), request.message()) && is_same(known.access(), request.access()),
             None => false,
         };
         if is_one {
@@ -133,15 +133,15 @@ const fn is_first<P: Quantities>(index: usize) -> bool {
     true
 }
 
-/// Returns the message that is sent by a path if a station uses it. Paths that read come first.
-const fn sent<P: Quantities>(index: usize) -> Option<&'static str> {
+/// Returns the request that is sent by a path if a station uses it. Paths that read come first.
+const fn sent<P: Quantities>(index: usize) -> Option<&'static Exchange> {
     if index >= P::READS.len() {
         let path = &P::SETS[index - P::READS.len()];
-        return if has(&SETTINGS, path.quantity) { Some(path.request.message()) } else { None };
+        return if has(&SETTINGS, path.quantity) { Some(path.request) } else { None };
     }
     let path = &P::READS[index];
     match path.request {
-        Some(request) if has(&READINGS, path.quantity) => Some(request.message()),
+        Some(request) if has(&READINGS, path.quantity) => Some(request),
         Some(_) | None => None,
     }
 }

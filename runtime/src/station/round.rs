@@ -50,7 +50,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Reads a module and tells it what it is to do. One that does not answer is only told.
     fn ask(&mut self, place: usize, now: u32) -> Result<(), NotHeld> {
         let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
-        let Some(target) = P::module(module.node.into()) else { return Ok(()) };
+        let Some(target) = P::module(module.node().into()) else { return Ok(()) };
         // What waits for the driver since the last round may not be what is wanted now.
         module.once.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
         let Some(module) = self.modules.get(place) else { return Ok(()) };
@@ -138,7 +138,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let is_stop = goal == Goal::Off;
         let once = Pace { tries: 1, ..settings.pace };
         if !is_stop {
-            self.has_room()?;
+            self.has_room(1)?;
         }
         let ticket = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
         if is_stop {
@@ -156,7 +156,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         let Some(module) = self.modules.get(place) else { return Ok(()) };
         let group = request::group::<P>(target).filter(|_| module.placed == Placed::Unknown);
         if let Some(request) = group {
-            self.has_room()?;
+            self.has_room(1)?;
             let once = Pace { tries: 1, ..pace };
             let ticket = self.client.ask_at(once, request, now).map_err(|Full| NotHeld::Full)?;
             self.modules.get_mut(place).into_iter().for_each(|module| module.once = Some(ticket));
@@ -164,7 +164,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         for (index, request) in request::readings::<P>(target).into_iter().enumerate() {
             let is_read = self.modules.get(place).and_then(|module| module.reads.get(index)).is_some_and(Read::is_on);
             let Some(request) = request.filter(|_| !is_read) else { continue };
-            self.has_room()?;
+            self.has_room(1)?;
             let ticket = self.client.every(round, request, now).map_err(|_| NotHeld::Full)?;
             if let Some(read) = self.modules.get_mut(place).and_then(|module| module.reads.get_mut(index)) {
                 *read = Read::of(ticket);
@@ -176,8 +176,16 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Holds what a module is to do.
     fn tell(&mut self, place: usize, goal: Goal, target: P::Target, now: u32) -> Result<(), NotHeld> {
         let is_output = matches!(goal, Goal::Output { .. });
+        let Some(node) = self.modules.get(place).map(Module::node) else { return Ok(()) };
+        let settings = &self.settings;
+        let requests = match goal {
+            Goal::Leave | Goal::Read => [None; 3],
+            Goal::Off => [request::switch_off::<P>(settings, target).ok().flatten(), None, None],
+            Goal::Output { point, is_on } => output::<P>(settings, target, point, is_on),
+        };
         if is_output {
-            self.has_room()?;
+            // What is held already is replaced.
+            self.has_room(requests.iter().flatten().count().saturating_sub(self.client.held_by(node)))?;
         }
         let Self { client, settings, .. } = self;
         let Some(module) = self.modules.get_mut(place) else { return Ok(()) };
@@ -190,21 +198,16 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
         if is_new {
             (module.goal, module.is_met) = (Goal::Read, false);
         }
-        let requests = match goal {
-            Goal::Leave | Goal::Read => [None; 3],
-            Goal::Off => [request::switch_off::<P>(settings, target).ok().flatten(), None, None],
-            Goal::Output { point, is_on } => output::<P>(settings, target, point, is_on),
-        };
         module.duty.hold(client, requests.into_iter().flatten(), settings.round, agrees, now)?;
         module.goal = goal;
         self.hurry_stop(place, now);
         Ok(())
     }
 
-    /// Tests whether there is room beside that for stops.
-    fn has_room(&self) -> Result<(), NotHeld> {
+    /// Tests whether there is room for more requests beside that for stops.
+    fn has_room(&self, count: usize) -> Result<(), NotHeld> {
         let stops = self.groups.iter().filter(|group| group.stop.is_none()).count();
-        if self.client.room() > M + stops { Ok(()) } else { Err(NotHeld::Full) }
+        if self.client.room() >= M + stops + count { Ok(()) } else { Err(NotHeld::Full) }
     }
 
     /// Returns when there is something to do, if the client has nothing to do before.

@@ -74,10 +74,12 @@ fn a_stopped_module_that_is_lost_hears_nothing_but_stops() {
     bus.station.stop(1, 9000).expect("there is such a group");
     bus.run(13_100);
     bus.forget();
+    bus.run(15_900);
+    let sent: std::vec::Vec<_> = bus.sent().into_iter().filter(|text| text.contains(": 1 ")).collect();
+    assert!(sent.len() >= 2 && sent.iter().all(|text| text.ends_with("off")), "{sent:?}");
+    assert!(bus.charger(1).is_on);
     bus.charger(1).is_there = true;
-    bus.run(14_100);
-    let sent: std::vec::Vec<_> = bus.sent().into_iter().filter(|text| text.contains("1 ")).collect();
-    assert!(sent[0].ends_with("off"), "{sent:?}");
+    bus.run(17_100);
     assert!(!bus.charger(1).is_on);
 }
 

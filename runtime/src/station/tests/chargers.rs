@@ -56,6 +56,9 @@ const STATE: Exchange = ASK.of("state").id(COMMAND, 8).length(4);
 /// Its group alone.
 const PLACE: Exchange = ASK.of("place").id(COMMAND, 7).length(4);
 const MEASURED: Exchange = ASK.of("measured").id(COMMAND, 9).length(4);
+/// Another access to what is measured.
+const LOOKED_AT: Exchange =
+    Access::new("look", &[Some(Who::One), None, None]).request(&FRAME).reply(&FRAME).of("measured").length(4);
 /// Switches on and off. Nobody answers it.
 const ORDER: Exchange = Access::new("order", &[Some(Who::Nobody), Some(Who::Nobody), None])
     .request(&FRAME)
@@ -157,6 +160,18 @@ pub struct Talkative;
 impl Make for Talkative {
     const READS: &'static [ReadPath] =
         &[ReadPath::switch(Quantity::DELIVERING, &[(Kind::Report, &REPORT)], FIRST), VOLTAGE_READ];
+    const SETS: &'static [SetPath] = InGroups::SETS;
+    const WATCHDOG: Option<Time> = None;
+    const AFTER_SILENCE: AfterSilence = AfterSilence::Unknown;
+}
+
+/// They are asked for one message by two accesses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twofold;
+
+impl Make for Twofold {
+    const READS: &'static [ReadPath] =
+        &[ReadPath::switch(Quantity::DELIVERING, MEASUREMENTS, THIRD).asked_by(&LOOKED_AT), VOLTAGE_READ, CURRENT_READ];
     const SETS: &'static [SetPath] = InGroups::SETS;
     const WATCHDOG: Option<Time> = None;
     const AFTER_SILENCE: AfterSilence = AfterSilence::Unknown;

@@ -1,7 +1,7 @@
 //! What a station refuses to be.
 
 use super::bus::{LIMITS, PACE, settings, volts};
-use super::chargers::{Apart, AtOnce, InGroups, Message, Mute, Talkative, group};
+use super::chargers::{Apart, AtOnce, InGroups, Message, Mute, Talkative, Twofold, group};
 use crate::client::Pace;
 use crate::station::{Beyond, Found, Limits, Refused, SetPoint, Settings, Station, Unfit};
 use crate::{Error, Quantity};
@@ -19,10 +19,11 @@ fn unfit_alone(settings: Settings, address: u8) -> Option<Unfit> {
 
 #[test]
 fn the_room_holds_what_each_module_reads_and_sets_its_group_and_each_stop() {
-    // They read two messages and set two, three and one of three, and three of two.
+    // They read two messages and set two, three and one of three, three of two, and one by two accesses.
     assert_eq!(Station::<Message<InGroups>, 2, 2, 14>::ROOM, 2 * (2 + 2 + 2) + 2);
     assert_eq!(Station::<Message<AtOnce>, 1, 2, 7>::ROOM, 2 + 1 + 2 + 2);
     assert_eq!(Station::<Message<Apart>, 3, 1, 22>::ROOM, 3 * (2 + 3 + 2) + 1);
+    assert_eq!(Station::<Message<Twofold>, 1, 0, 6>::ROOM, 2 + 2 + 2);
 }
 
 #[test]

@@ -90,15 +90,35 @@ fn a_stop_of_a_group_that_nobody_knows_is_refused() {
     assert_eq!(bus.station.watch(3, 4400), Err(Refused::Group(3)));
 }
 
+/// Asks what nobody answers until there is room for so many requests.
+fn ask_elsewhere(bus: &mut Grouped, room: usize) {
+    let nowhere = <Message<InGroups> as Addressed>::module(9).expect("modules have numbers");
+    while bus.station.client.room() > room {
+        let request = Message::<InGroups>::read::<At<InGroups>>(&[Quantity::DELIVERING], nowhere);
+        let request = request.expect("it is legal").next().expect("it is read");
+        bus.station.client.ask(request, bus.now).expect("there is room");
+    }
+}
+
+#[test]
+fn what_delivers_leaves_room_for_the_stop_of_each_module_and_of_each_group() {
+    for (room, is_told) in [(2 + 2 + 1, false), (2 + 2 + 2, true)] {
+        let mut bus = known(settings(Found::Watch));
+        ask_elsewhere(&mut bus, room);
+        let now = bus.now;
+        bus.station.deliver(1, volts(500, 10), now).expect("it is allowed");
+        bus.run(now + 1);
+        assert_eq!(bus.station.told(1).is_some(), is_told, "the set-point and the switch-on have room: {room}");
+        assert!(bus.station.client.room() >= 2 + 2, "{room}");
+        bus.run(now + 4000);
+        assert!(bus.chargers.iter().all(|charger| charger.is_on), "{room}");
+    }
+}
+
 #[test]
 fn a_stop_without_room_is_sent_when_there_is_room() {
     let mut bus = delivering();
-    let nowhere = <Message<InGroups> as Addressed>::module(9).expect("modules have numbers");
-    while bus.station.client.room() > 0 {
-        let request = Message::<InGroups>::read::<At<InGroups>>(&[Quantity::DELIVERING], nowhere);
-        let request = request.expect("it is legal").next().expect("it is read");
-        bus.station.client.ask(request, 4400).expect("there is room");
-    }
+    ask_elsewhere(&mut bus, 0);
     bus.station.stop(1, 4400).expect("there is such a group");
     bus.run(4401);
     assert_eq!(bus.station.told(1), None);
