@@ -185,6 +185,7 @@ def main(program):
     bus.send(0xF1, STATUS, 0, bytes(8))
     bus.run(SILENCE + 1)
     expect(bus.outputs() == [(True, 400_000, 5_000)] * 4, "another controller that reads changes nothing", bus)
+    expect(not any("Rival" in event for event in bus.events), "another controller that reads is no rival", bus)
     bus.send(0xF1, SETTINGS, 0, struct.pack(">II", 300_000, 2_000))
     bus.run(SILENCE + 1)
     expect(any("Rival" in event for event in bus.events), "another controller that sets is told of", bus)

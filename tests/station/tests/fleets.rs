@@ -2,12 +2,12 @@
 
 mod bus;
 
-use bus::fleets::{huaweis, megmeets, trios};
-use bus::{Charger, rules};
+use bus::fleets::{huaweis, megmeets, megmeets_at, trios};
+use bus::{Bus, Charger, rules};
 use canspec_protocols::{huawei, megmeet, trio};
 use canspec_runtime::client::Output;
 use canspec_runtime::sim::{Bench, Event};
-use canspec_runtime::station::{Found, Limits, SetPoint, Settings, Station, Step, Unfit};
+use canspec_runtime::station::{Found, Limits, SetPoint, Settings, Station, Unfit};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received};
 use canspec_station::{LIMITS, settings};
 
@@ -45,10 +45,10 @@ fn told<P: Quantities + Addressed<Target: PartialEq>, const N: usize>(
 #[test]
 fn modules_of_every_vendor_do_what_they_are_told() {
     let on = [(VOLTAGE, 53_500), (DELIVERING, 1)];
-    assert_eq!(told(megmeets(), &on), [[Some(53_500), Some(1)]; 4]);
+    assert_eq!(told(megmeets_at([1, 2, 3, 4]), &on), [[Some(53_500), Some(1)]; 4]);
     assert_eq!(told(huaweis(), &on), [[Some(53_500), Some(1)]; 3]);
     assert_eq!(told(trios(), &[(VOLTAGE, 24_000), (DELIVERING, 1)]), [[Some(24_000), Some(1)]; 3]);
-    assert_eq!(told(megmeets(), &[(DELIVERING, 0)]), [[Some(0), Some(0)]; 4]);
+    assert_eq!(told(megmeets_at([1, 2, 3, 4]), &[(DELIVERING, 0)]), [[Some(0), Some(0)]; 4]);
     assert_eq!(told(huaweis(), &[(DELIVERING, 0)]), [[Some(0), Some(0)]; 3]);
     assert_eq!(told(trios(), &[(VOLTAGE, 24_000), (DELIVERING, 0)]), [[Some(0), Some(0)]; 3]);
 }
@@ -60,38 +60,17 @@ fn low<P: Quantities>() -> Settings {
 
 #[test]
 fn modules_without_groups_deliver_and_stop_in_the_group_that_the_program_chooses() {
-    type Megmeet = megmeet::Message;
-    let mut station = Station::<Megmeet, 4, 1, 64>::new(low::<Megmeet>(), [1, 2, 3, 4], [(1, None)]).expect("it fits");
-    let mut bench = Bench::<Megmeet, Charger<Megmeet>, 4, 64>::new(megmeets(), rules::<Megmeet>(), 1);
-    [1, 2, 3].into_iter().try_for_each(|node| station.assign(node, Some(1), 0)).expect("it answers nobody yet");
-    let point = SetPoint { voltage_mv: 53_500, current_ma: None };
-    let mut outputs = Vec::new();
-    for now in 0..40_000 {
-        match now {
-            5000 => station.deliver(1, point, now).expect("the document allows it"),
-            20_000 => station.stop(1, now).expect("the group is known"),
-            _ => {}
-        }
-        while let Some(event) = bench.poll(now) {
-            let Event::Frame { frame, at } = event else { panic!("{event:?}") };
-            station.handle(&frame, at);
-        }
-        loop {
-            match station.poll(now) {
-                Step::Send { frame, .. } => bench.send(&frame, now),
-                Step::Event(_) => {}
-                Step::Wait(_) => break,
-            }
-        }
-        if [19_999, 39_999].contains(&now) {
-            outputs.push(
-                [1, 2, 3, 4].map(|node| (station.output(node, now), bench.device(node).expect("it is there").is_on)),
-            );
-        }
-    }
+    let mut bus = megmeets(low::<megmeet::Message>(), [1, 2, 3, 4], &[1, 2, 3], 1);
+    bus.run(5000);
+    bus.deliver(1, SetPoint { voltage_mv: 53_500, current_ma: None }, 20_000);
+    let outputs = |bus: &mut Bus<megmeet::Message, 4, 1>| {
+        [1, 2, 3, 4].map(|node| (bus.state(node).expect("it was found"), bus.device(node).is_on))
+    };
     let (on, off) = ((Output::On, true), (Output::Off, false));
-    assert_eq!(outputs, [[on, on, on, off], [off; 4]]);
-    assert_eq!(bench.device(1).and_then(|module| module.voltage_mv), Some(53_500));
+    assert_eq!(outputs(&mut bus), [on, on, on, off]);
+    assert_eq!(bus.device(1).voltage_mv, Some(53_500));
+    bus.stop(1, 40_000);
+    assert_eq!(outputs(&mut bus), [off; 4]);
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Modules of five vendors.
 
 use canspec_protocols::{huawei, infy, megmeet, mxr, trio};
+use canspec_runtime::station::{Settings, Station};
 use canspec_runtime::{Frame, Received};
+use canspec_station::ADDRESSES;
 
 use super::{Bus, Charger, Reports};
 
-pub fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>) -> Option<infy::Message> {
+fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>) -> Option<infy::Message> {
     use infy::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
     Some(match request.content() {
         Message::ReadModuleOutput => {
@@ -22,7 +24,7 @@ pub fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Mess
     })
 }
 
-pub fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -> Option<mxr::Message> {
+fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -> Option<mxr::Message> {
     use mxr::{Alarms, GroupAndAddress, Message, ModuleStatus, OutputCurrent, OutputVoltage};
     let value = if module.is_on { Alarms::default() } else { Alarms::DCDC_OFF };
     Some(match request.content() {
@@ -36,10 +38,7 @@ pub fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message
     })
 }
 
-pub fn megmeet_tells(
-    request: &Received<megmeet::Message>,
-    module: &Charger<megmeet::Message>,
-) -> Option<megmeet::Message> {
+fn megmeet_tells(request: &Received<megmeet::Message>, module: &Charger<megmeet::Message>) -> Option<megmeet::Message> {
     use megmeet::{Alarms, ExtendedAlarms, Message, ModuleStatus, OutputCurrent, OutputVoltage};
     let alarms = if module.is_on { Alarms::default() } else { Alarms::SHUT_DOWN };
     Some(match request.content() {
@@ -92,23 +91,51 @@ fn trio_reports(node: u8, place: u8, module: &Charger<trio::Message>) -> Option<
     Some(Message::decode(&blank).expect("a report").with_content(content).encode().expect("values in range"))
 }
 
+/// The groups of INFY's modules, by number and by address.
+pub const INFY_GROUPS: [(u8, infy::Target); 2] = [(1, infy::Target::Group(1)), (2, infy::Target::Group(2))];
+
 /// Eight modules in the groups 1 and 2.
 pub fn infies(seed: u64) -> Bus<infy::Message, 8, 2> {
-    let group = |number| (number, infy::Target::Group(number));
-    let modules = [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Charger::new(group(1 + node / 4), infy_tells)));
-    Bus::new([group(1), group(2)], modules, seed)
+    Bus::new(INFY_GROUPS, infies_at([0, 1, 2, 3, 4, 5, 6, 7]), seed)
 }
+
+/// Modules of INFY. Four are in each group.
+pub fn infies_at<const N: usize>(nodes: [u8; N]) -> [(u8, Charger<infy::Message>); N] {
+    nodes.map(|node| (node, Charger::new(INFY_GROUPS[usize::from(node / 4)], infy_tells)))
+}
+
+/// The group of Maxwell's modules.
+pub const MAXWELL_GROUP: (u8, mxr::Target) = (5, mxr::Target::Group(5));
 
 /// Four modules in the group 5.
 pub fn maxwells(seed: u64) -> Bus<mxr::Message, 4, 1> {
-    let group = (5, mxr::Target::Group(5));
-    let modules = [3, 4, 5, 6].map(|node| (node, Charger::new(group, mxr_tells)));
-    Bus::new([group], modules, seed)
+    Bus::new([MAXWELL_GROUP], maxwells_at([3, 4, 5, 6]), seed)
 }
 
-/// Four modules of MEGMEET. They have no groups: each is asked alone, or all together.
-pub fn megmeets() -> [(u8, Charger<megmeet::Message>); 4] {
-    [1, 2, 3, 4].map(|node| (node, Charger::new((0, megmeet::Target::Broadcast), megmeet_tells)))
+/// Modules of Maxwell.
+pub fn maxwells_at<const N: usize>(nodes: [u8; N]) -> [(u8, Charger<mxr::Message>); N] {
+    nodes.map(|node| (node, Charger::new(MAXWELL_GROUP, mxr_tells)))
+}
+
+/// Modules of MEGMEET with a station that puts `members` into group 1.
+pub fn megmeets<const N: usize>(
+    settings: Settings,
+    nodes: [u8; N],
+    members: &[u8],
+    seed: u64,
+) -> Bus<megmeet::Message, N, 1> {
+    let addresses = ADDRESSES.map(|address| address + 1);
+    let station = Station::new(settings, addresses, [(1, None)]).expect("it fits the document");
+    let mut bus = Bus::of(station, megmeets_at(nodes), seed);
+    for node in members {
+        bus.station.assign(*node, Some(1), 0).expect("it answers nobody yet");
+    }
+    bus
+}
+
+/// Modules of MEGMEET. They have no groups: each is asked alone, or all together.
+pub fn megmeets_at<const N: usize>(nodes: [u8; N]) -> [(u8, Charger<megmeet::Message>); N] {
+    nodes.map(|node| (node, Charger::new((0, megmeet::Target::Broadcast), megmeet_tells)))
 }
 
 /// Three modules of Huawei. They have no groups, either, and say by themselves whether they deliver.
