@@ -12,7 +12,8 @@ pub enum Step {
     Send {
         /// The request.
         ticket: Ticket,
-        /// The frame.
+        /// The frame. What answers it is known by what its message requires, and what is held is compared by its
+        /// values. So a program may write a counter into it that no signal shows, each time that it sends it.
         frame: Frame,
     },
     /// A request is lost: it was sent as often as it may be, and no answer came. If it is held, none came

@@ -17,6 +17,8 @@ pub trait Driver {
 
     /// Sends a frame, or returns `false` if the driver does not take it now: it is full, or the bus is away.
     ///
+    /// It may write a counter into the frame that no signal shows, as [`Step::Send`](crate::client::Step::Send) says.
+    ///
     /// # Errors
     ///
     /// Fails if the driver is of no use any more.
