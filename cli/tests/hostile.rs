@@ -208,37 +208,82 @@ fn what_is_no_file_is_refused_by_its_name() -> Result {
     Ok(())
 }
 
+/// Puts a pipe that nobody writes to, and then a device, at a path. Each call must end at once, with the complaint.
+#[cfg(unix)]
+fn refuses_what_has_no_end(path: &Path, call: &[&str], complaint: &str) -> Result {
+    let refused = |what: &str| -> Result {
+        let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+        let folder = path.parent().ok_or("the path has a folder")?;
+        let output = canspec.args(call).current_dir(folder).stdin(Stdio::null()).output()?;
+        let said = String::from_utf8(output.stderr)?;
+        assert_eq!(said.lines().next(), Some(complaint), "{what}");
+        assert_ne!(output.status.code(), Some(0), "{what}");
+        Ok(fs::remove_file(path)?)
+    };
+    assert!(Command::new("mkfifo").arg(path).status()?.success());
+    refused("a pipe that nobody writes to")?;
+    std::os::unix::fs::symlink("/dev/zero", path)?;
+    refused("a link to a device")
+}
+
 #[test]
 #[cfg(unix)]
-fn a_pipe_or_a_device_as_a_base_is_refused_and_not_waited_for() -> Result {
+fn a_pipe_or_a_device_as_a_spec_is_refused_and_not_waited_for() -> Result {
     let folder = tempfile::tempdir()?;
+    let refused = "error[file]: this is a pipe or a device, not a spec";
+    let check = |name: &'static str| ["check", "--message-format", "short", name];
+    refuses_what_has_no_end(&folder.path().join("a.yaml"), &check("a.yaml"), &format!("a.yaml: {refused}"))?;
+    let spec = ["decode", "--spec", "a.yaml"];
+    refuses_what_has_no_end(
+        &folder.path().join("a.yaml"),
+        &spec,
+        "error[file]: this is a pipe or a device, not a spec",
+    )?;
+    fs::write(folder.path().join("derived.yaml"), "based_on: base\n")?;
     let base = folder.path().join("base.yaml");
-    let derived = folder.path().join("derived.yaml");
-    fs::write(&derived, "based_on: base\n")?;
-    let refused = |what: &str| -> Result {
-        let mut check = Command::new(env!("CARGO_BIN_EXE_canspec"));
-        let check = check
-            .args(["check", "--message-format", "short"])
-            .arg(&derived)
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()?;
-        let said = String::from_utf8(check.wait_with_output()?.stderr)?;
-        let first = said.lines().next().unwrap_or_default();
-        assert_eq!(first, format!("{}: error[file]: this is a pipe or a device, not a spec", base.display()), "{what}");
-        fs::remove_file(&base)?;
-        Ok(())
-    };
-    assert!(Command::new("mkfifo").arg(&base).status()?.success());
-    refused("a pipe that nobody writes to")?;
-    std::os::unix::fs::symlink("/dev/null", &base)?;
-    refused("a link to a device")
+    refuses_what_has_no_end(&base, &check("derived.yaml"), &format!("base.yaml: {refused}"))
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_or_a_device_as_settings_or_as_a_dbc_is_refused_and_not_waited_for() -> Result {
+    let folder = tempfile::tempdir()?;
+    let why = "this is a pipe or a device, not a file";
+    let settings = format!("canspec: canspec.toml: {why}");
+    refuses_what_has_no_end(&folder.path().join("canspec.toml"), &["decode"], &settings)?;
+    let dbc = format!("canspec: a.dbc: {why}");
+    refuses_what_has_no_end(&folder.path().join("a.dbc"), &["import", "dbc", "a.dbc"], &dbc)
+}
+
+#[test]
+#[cfg(unix)]
+fn what_a_shell_has_open_may_be_a_spec_or_a_dbc_up_to_a_size() -> Result {
+    let shell = |call: &str| Command::new("sh").args(["-c", call, env!("CARGO_BIN_EXE_canspec")]).output();
+    let dbc = "printf 'BO_ 1 m: 8 x\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" y\n'";
+    let imported = shell(&format!("{dbc} | \"$0\" import dbc /dev/stdin --protocol p"))?;
+    assert!(String::from_utf8(imported.stdout)?.contains("protocol: p\n"));
+    let endless = shell("\"$0\" import dbc /dev/stdin </dev/zero")?;
+    assert_eq!(String::from_utf8(endless.stderr)?, "canspec: /dev/stdin: the file is larger than 64 MiB\n");
+    let spec = shell("cat /dev/zero | \"$0\" check --message-format short /dev/stdin")?;
+    let said = String::from_utf8(spec.stderr)?;
+    assert!(said.starts_with("/dev/stdin: error[file]: the file is larger than 4 MiB"), "{said}");
+    Ok(())
+}
+
+#[test]
+#[cfg(unix)]
+fn decoded_lines_without_end_are_refused() -> Result {
+    let shell = |call: &str| Command::new("sh").args(["-c", call, env!("CARGO_BIN_EXE_canspec")]).output();
+    let output = shell("\"$0\" encode --protocol infy --from jsonl /dev/zero")?;
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(String::from_utf8(output.stderr)?, "canspec: /dev/zero: line 1 has no end after 256 MiB\n");
+    Ok(())
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_that_cannot_be_read_is_refused_by_its_name() -> Result {
     assert!(complaint(Path::new("/proc/self/mem"))?.starts_with(": error[file]: "));
-    assert_eq!(complaint(Path::new("/dev/zero"))?, ": error[file]: the file is larger than 4 MiB");
+    assert_eq!(complaint(Path::new("/dev/zero"))?, ": error[file]: this is a pipe or a device, not a spec");
     Ok(())
 }

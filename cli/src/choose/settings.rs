@@ -1,10 +1,10 @@
 //! What nobody says in a call: the protocols and the device model that a folder or the environment names.
 
 use std::env;
-use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use canspec_codegen::source::{SIZE_LIMIT, read_whole};
 use serde::Deserialize;
 
 use crate::failure::{Failure, shown};
@@ -69,7 +69,7 @@ impl Settings {
         }
         for folder in folders() {
             let path = folder.join(FILE);
-            match fs::read_to_string(&path) {
+            match text(&path) {
                 Ok(text) => return Self::read(&path, &text),
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
                 Err(error) => return Err(Failure::input(&path, &error)),
@@ -96,6 +96,11 @@ impl Settings {
         let origin = self.origin.as_ref().map_or(String::new(), |origin| format!("{origin}: "));
         Failure::Call(format!("{origin}{why}"))
     }
+}
+
+fn text(path: &Path) -> io::Result<String> {
+    let bytes = read_whole(path, SIZE_LIMIT)?;
+    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "this is not text in UTF-8"))
 }
 
 /// Parts names with commas between them.

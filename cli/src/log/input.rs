@@ -18,6 +18,9 @@ use crate::log::{Entry, Reader};
 /// Longer lines are unreadable.
 pub const LONGEST: usize = 1 << 16;
 
+/// A line that is longer than this beyond what is read of it has no end, as in `/dev/zero`.
+const ENDLESS: u64 = 1 << 28;
+
 /// Bytes of a file that are decoded at once, beside what completes their last line.
 const PART: u64 = 1 << 18;
 
@@ -220,9 +223,21 @@ impl Input {
         let limit = u64::try_from(MOST).unwrap_or(u64::MAX);
         let count = self.reader.by_ref().take(limit).read_until(b'\n', &mut self.line)?;
         if count == MOST && self.line.last() != Some(&b'\n') {
-            self.reader.skip_until(b'\n')?;
+            self.skip()?;
         }
         Ok(count > 0)
+    }
+
+    /// Drops the rest of a line.
+    fn skip(&mut self) -> io::Result<()> {
+        let mut rest = self.reader.by_ref().take(ENDLESS);
+        rest.skip_until(b'\n')?;
+        if rest.limit() > 0 {
+            return Ok(());
+        }
+        let number = self.number + memchr::memchr_iter(b'\n', &self.line).count() + 1;
+        let what = format!("line {number} has no end after {} MiB", ENDLESS >> 20);
+        Err(io::Error::new(io::ErrorKind::InvalidData, what))
     }
 
     /// Does `work` on each line; what it refuses is complained about, and the rest goes on.
@@ -382,6 +397,18 @@ mod tests {
             let text = [vec![b'x'; LONGEST + surplus], b"\nb\n".to_vec()].concat();
             assert_eq!(lines(text), [bad(1, "the line is longer than 65536 bytes"), good(2, "b")], "{surplus}");
         }
+    }
+
+    #[test]
+    fn a_line_without_end_ends_the_input() {
+        let endless = || Box::new(io::Cursor::new("a\n").chain(io::repeat(b'x')));
+        let why = "test: line 2 has no end after 256 MiB";
+        let said = |failure: Failure| if let Failure::Input(what) = failure { what } else { format!("{failure:?}") };
+        let mut input = Input::new(Path::new("test"), endless());
+        assert!(input.next_line().is_ok_and(|line| line.is_some()));
+        assert_eq!(input.next_line().err().map(said).as_deref(), Some(why));
+        let part = Input::new(Path::new("test"), endless()).next_part();
+        assert_eq!(part.err().map(said).as_deref(), Some(why));
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Compares generated files with the disk, and writes all of them or none.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{fs, io, process};
 
 use crate::emit::MARK;
+use crate::read::source::open_whole;
 use crate::words::visible::visible;
 
 /// A file and the text that it should have.
@@ -43,7 +45,7 @@ impl File {
     ///
     /// The file exists but cannot be read.
     pub fn state(&self) -> io::Result<State> {
-        match fs::read(&self.path) {
+        match read(&self.path) {
             Ok(known) if known == self.text.as_bytes() => Ok(State::Current),
             Ok(known) if known.is_empty() || is_ours(&known) => Ok(State::Stale),
             Ok(_) => Ok(State::NotOurs),
@@ -118,8 +120,15 @@ pub fn write(files: &[File]) -> io::Result<()> {
 
 /// Removes the generated ones among the files. They may be gone already.
 pub(crate) fn remove(paths: &[PathBuf]) -> io::Result<()> {
-    let mut generated = paths.iter().filter(|path| fs::read(path).is_ok_and(|text| is_ours(&text)));
+    let mut generated = paths.iter().filter(|path| read(path).is_ok_and(|text| is_ours(&text)));
     generated.try_for_each(|path| fs::remove_file(path).map_err(|error| at(path, &error)))
+}
+
+/// Reads what should be a generated file. Others may have put something in its place that has no end.
+pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_whole(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 fn is_ours(text: &[u8]) -> bool {

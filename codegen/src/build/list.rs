@@ -1,10 +1,9 @@
 //! Writes `protocols.rs`, which has a module for each protocol of a folder.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Generated;
-use crate::build::files::File;
+use crate::build::files::{self, File};
 use crate::emit::MARK;
 
 /// Name of the file without its ending. No protocol may have this name.
@@ -18,7 +17,7 @@ pub fn file_in(folder: &Path, generated: &[Generated]) -> File {
 
 /// Returns the files that an earlier list in the folder includes.
 pub fn listed(folder: &Path) -> Vec<PathBuf> {
-    let list = fs::read_to_string(path_in(folder)).unwrap_or_default();
+    let list = files::read(&path_in(folder)).ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default();
     let names = list.lines().filter_map(|line| line.strip_prefix("    include!(\"")?.strip_suffix("\");"));
     let beside = names.filter(|name| Path::new(name).file_name() == Some(name.as_ref()));
     beside.map(|name| folder.join(name)).collect()

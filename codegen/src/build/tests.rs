@@ -386,6 +386,29 @@ fn what_cannot_be_written_is_an_error_and_no_file_is_replaced() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_build_waits_for_no_pipe() {
+    let pipe = |path: std::path::PathBuf| {
+        let made = std::process::Command::new("mkfifo").arg(path).status();
+        assert!(made.expect("the command exists").success());
+    };
+    let root = Crate::new(&[("specs/a.yaml", HEATER)]);
+    pipe(root.path("specs/b.yaml"));
+    let lines = root.build();
+    let refused = "specs/b.yaml: error[file]: this is a pipe or a device, not a spec";
+    assert!(lines.iter().any(|line| line.contains(refused)), "{lines:?}");
+    fs::remove_file(root.path("specs/b.yaml")).expect("it is there");
+    for file in ["out/heater.rs", "out/protocols.rs"] {
+        fs::create_dir_all(root.path("out")).expect("it can be made");
+        pipe(root.path(file));
+        let lines = root.build();
+        let refused = format!("{file}: this is a pipe or a device, not a file");
+        assert!(lines.last().is_some_and(|line| line.contains(&refused)), "{lines:?}");
+        fs::remove_file(root.path(file)).expect("it is there");
+    }
+}
+
+#[test]
 fn outside_a_build_script_there_is_nowhere_to_write() {
     let root = Crate::new(&[("specs/a.yaml", HEATER)]);
     let lines = Builder::new().folder(root.path("specs")).run();

@@ -89,7 +89,7 @@ impl Bases {
         let file = format!("{name}.yaml");
         let beside = folder.map(|folder| folder.join(&file)).filter(|path| is_there(path));
         let known = || self.0.get(name).map(|text| Source::new(file, text.as_bytes().to_vec()));
-        beside.map(|path| Source::read_named(&path)).or_else(known).transpose()
+        beside.map(|path| Source::read(&path)).or_else(known).transpose()
     }
 
     fn missing(&self, name: &str, chain: &[String], folder: Option<&Path>) -> Flaw {

@@ -29,7 +29,7 @@ impl Source {
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
         let name = name.into();
         if bytes.len() > SIZE_LIMIT {
-            return Err(too_large(&name));
+            return Err(unreadable(&name, &too_large(SIZE_LIMIT)));
         }
         let mut text = String::from_utf8(bytes).map_err(|error| not_utf8(&name, &error))?;
         if text.starts_with(BYTE_ORDER_MARK) {
@@ -45,25 +45,14 @@ impl Source {
     ///
     /// # Errors
     ///
-    /// The file does not exist, is a folder, or cannot be read, or [`Source::new`] refuses its
-    /// content.
+    /// [`read_whole`] refuses the file, or [`Source::new`] its content.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        match read_limited(path) {
+        match read_whole(path, SIZE_LIMIT) {
             Ok(bytes) => Self::new(name, bytes).map(|source| source.at_path(path)),
             Err(error) => Err(unreadable(&name, &error)),
         }
-    }
-
-    /// Reads a file that another one names. It may be a pipe, for which nobody would wait, or a device.
-    pub(crate) fn read_named(path: &Path) -> Result<Self, Diagnostics> {
-        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            let problem = Diagnostic::error(&rules::FILE, At::File, "this is a pipe or a device, not a spec");
-            let help = "put a file in its place, or take `based_on` out of the spec that names it";
-            return Err(refused(&path.display().to_string(), String::new(), problem.help(help)));
-        }
-        Self::read(path)
     }
 
     fn forbidden_characters(&self) -> Vec<Diagnostic> {
@@ -79,39 +68,51 @@ impl Source {
     }
 }
 
-fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    let metadata = file.metadata()?;
-    if metadata.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if metadata.len() > SIZE_LIMIT as u64 {
-        return Err(io::ErrorKind::FileTooLarge.into());
-    }
+/// Reads a file of at most `limit` bytes, which are whole MiB.
+///
+/// # Errors
+///
+/// The file does not exist, is a folder, a pipe or a device, is larger, or cannot be read. What the
+/// caller has open already, as `/dev/stdin`, may be a pipe, because it ends when its writer does.
+pub fn read_whole(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    file.take(SIZE_LIMIT as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    let most = u64::try_from(limit).unwrap_or(u64::MAX);
+    open_whole(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() > limit { Err(too_large(limit)) } else { Ok(bytes) }
+}
+
+/// Opens a file that has an end. Nobody waits for a pipe to which nobody writes.
+pub(crate) fn open_whole(path: &Path) -> io::Result<File> {
+    let found = fs::metadata(path)?;
+    if found.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder, not a file"));
+    }
+    if !found.is_file() && !is_open_already(path) {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "this is a pipe or a device, not a file"));
+    }
+    File::open(path)
+}
+
+/// Tests for what the caller has open. A shell names so what it writes as `<(COMMAND)`.
+fn is_open_already(path: &Path) -> bool {
+    ["/dev/stdin", "/dev/fd", "/proc/self/fd"].iter().any(|open| path.starts_with(open))
+}
+
+fn too_large(limit: usize) -> io::Error {
+    io::Error::new(io::ErrorKind::FileTooLarge, format!("the file is larger than {} MiB", limit >> 20))
 }
 
 fn unreadable(name: &str, error: &io::Error) -> Diagnostics {
     #[expect(clippy::wildcard_enum_match_arm, reason = "the standard library's enum is open")]
     let (message, help) = match error.kind() {
-        io::ErrorKind::FileTooLarge => return too_large(name),
+        io::ErrorKind::FileTooLarge => (error.to_string(), "check that this is the spec you mean"),
         io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the path and the folder it starts from"),
         io::ErrorKind::IsADirectory => ("this is a folder, not a spec".to_owned(), "name a YAML file in it"),
+        io::ErrorKind::InvalidInput => ("this is a pipe or a device, not a spec".to_owned(), "put a file in its place"),
         io::ErrorKind::PermissionDenied => ("the file may not be read".to_owned(), "change its permissions"),
         _ => (format!("the file cannot be read: {error}"), "check that the file is there and complete"),
     };
     refused(name, String::new(), Diagnostic::error(&rules::FILE, At::File, message).help(help))
-}
-
-fn too_large(name: &str) -> Diagnostics {
-    let message = format!("the file is larger than {} MiB", SIZE_LIMIT >> 20);
-    refused(
-        name,
-        String::new(),
-        Diagnostic::error(&rules::FILE, At::File, message).help("check that this is the spec you mean"),
-    )
 }
 
 fn not_utf8(name: &str, error: &FromUtf8Error) -> Diagnostics {

@@ -1,13 +1,16 @@
 //! Reads a DBC.
 
-use std::fs;
 use std::path::Path;
 
 use can_dbc::{Dbc, decode_cp1252};
 use can_dbc_pest::{DbcParser, Parser as _, Rule};
+use canspec_codegen::source::read_whole;
 use pest::error::LineColLocation;
 
 use crate::failure::{Failure, shown};
+
+/// Largest DBC that is read, in bytes.
+const LARGEST: usize = 64 << 20;
 
 /// Why bytes are no DBC, and the line of the mistake.
 #[derive(Debug, PartialEq, Eq)]
@@ -24,7 +27,7 @@ impl From<&str> for Refusal {
 
 /// Reads a file.
 pub fn read(path: &Path) -> Result<Dbc, Failure> {
-    let bytes = fs::read(path).map_err(|error| Failure::input(path, &error))?;
+    let bytes = read_whole(path, LARGEST).map_err(|error| Failure::input(path, &error))?;
     parse(bytes).map_err(|Refusal { line, why }| match line {
         None => Failure::input(path, &why),
         Some(line) => Failure::Input(format!("{}:{line}: {why}", shown(path))),
