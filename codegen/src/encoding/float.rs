@@ -38,7 +38,7 @@ impl Room for Float<'_> {
     }
 
     fn typed(&self, text: &str) -> Result<Input, String> {
-        Ok(typed(self.signal, text))
+        typed(self.signal, text)
     }
 
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {

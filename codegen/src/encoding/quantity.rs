@@ -43,17 +43,21 @@ fn last_digit(text: &str) -> Option<String> {
     Some(text.char_indices().filter_map(digit).collect())
 }
 
-/// Reads `750V`, `750 V`, `0.75 kV`, `750` or a name.
-pub fn typed(signal: &Signal, text: &str) -> Input {
+/// Reads `750V`, `750 V`, `0.75 kV`, `750` or a name. A fraction is refused where doubles have none.
+pub fn typed(signal: &Signal, text: &str) -> Result<Input, String> {
     let of_unit = |text| signal.unit.and_then(|unit| unit_prefixes::read(text, unit, unit_prefixes::factor));
-    match of_unit(text).or_else(|| Rational::parse(text.trim())) {
-        Some(value) => match value.to_integer() {
-            Some(whole) => Input::Integer(whole),
-            None => Input::Number(value.to_f64()),
-        },
-        None => Input::Text(text.to_owned()),
+    let Some(value) = of_unit(text).or_else(|| Rational::parse(text.trim())) else {
+        return Ok(Input::Text(text.to_owned()));
+    };
+    match value.to_integer() {
+        Some(whole) => Ok(Input::Integer(whole)),
+        None if value.to_f64().abs() >= WHOLE => Err(format!("{value} has a fraction; numbers of that size are whole")),
+        None => Ok(Input::Number(value.to_f64())),
     }
 }
+
+/// From here on doubles have no fraction.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// Names the values that a signal takes.
 pub fn wanted(signal: &Signal) -> String {

@@ -48,6 +48,20 @@ fn a_wide_number_is_refused_with_all_its_digits() {
 }
 
 #[test]
+fn a_fraction_that_no_double_has_is_refused_and_not_rounded() {
+    let refused = |message: &str, value: &str| {
+        let refusal = requested(&written(WIDE), None, message, "counter:1", &[("value", value)]);
+        refusal.expect_err("it is refused").to_string()
+    };
+    // 2^52 and a half.
+    for value in ["4503599627370496.5", "-4503599627370496.5"] {
+        let why = format!("negative.value: {value} has a fraction; numbers of that size are whole");
+        assert_eq!(refused("negative", value), why);
+    }
+    assert_eq!(refused("negative", "4503599627370495.5"), "negative.value: 4503599627370495.5 is outside 0..1000");
+}
+
+#[test]
 fn a_special_value_is_legal_outside_the_range() {
     let delay = |delay| output(&[("temperature", "15"), ("delay", delay), ("power", "0")]);
     assert_eq!(delay("forbid").as_deref(), Some("001203F0#02176E0000000000"));

@@ -90,7 +90,7 @@ fn of_signal(out: &mut Vec<u8>, outcome: &Outcome<'_>, reading: Option<&Reading>
         Value::Text(text) => push(out, [&neutral(&escape::written(text))]),
         Value::Status { set, .. } => joined(out, " ", bit_names(outcome.protocol, signal, *set).map(|name| [name])),
     });
-    text(out, signal.unit.as_ref().map_or("", |unit| &unit.symbol));
+    text(out, &neutral(signal.unit.as_ref().map_or("", |unit| &unit.symbol)));
 }
 
 /// Writes the cells with which each row of a frame ends: notes, data and selectors.

@@ -284,10 +284,44 @@ fn physical(value: &RawValue, raw: Option<&RawValue>) -> Result<Input, String> {
     if !log::is_number(value) {
         return Err(format!("`value` is a number, a text or null, not {value}"));
     }
-    // A zero has a sign as a double alone.
-    let whole = whole(value).filter(|number| *number != 0 || value.get() == "0").map(Input::Integer);
-    let double = || value.get().parse().ok().filter(|number: &f64| number.is_finite()).map(Input::Number);
-    whole.or_else(double).ok_or_else(|| "`value` is no number of 64 bits".to_owned())
+    number(value.get())
+}
+
+/// From here on doubles have no fraction.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+
+/// Reads a number. A whole one keeps each digit, however it is written, but a zero has a sign as a double alone.
+fn number(text: &str) -> Result<Input, String> {
+    let double =
+        text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or("`value` is no number of 64 bits")?;
+    let Some((digits, power)) = decimal(text).filter(|_| double != 0.0) else {
+        return Ok(Input::Number(double));
+    };
+    if power < 0 && double.abs() >= WHOLE {
+        return Err(format!("`value` is {text}; numbers of that size are whole"));
+    }
+    Ok(integer(&digits, power).map_or(Input::Number(double), Input::Integer))
+}
+
+/// Splits a JSON number into digits that do not end in 0, with their sign, and a power of ten.
+fn decimal(text: &str) -> Option<(String, i64)> {
+    let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let (all, places) = (format!("{whole}{fraction}"), fraction.len());
+    let digits = all.trim_end_matches('0');
+    let zeros = i64::try_from(all.len() - digits.len()).ok()?;
+    let power = exponent.parse::<i64>().ok()?.checked_add(zeros)?.checked_sub(i64::try_from(places).ok()?)?;
+    Some((digits.to_owned(), power))
+}
+
+/// Returns a whole number within 64 bits and a sign.
+fn integer(digits: &str, power: i64) -> Option<i128> {
+    let number = digits.parse::<i128>().ok()?.checked_mul(10_i128.checked_pow(u32::try_from(power).ok()?)?)?;
+    Some(number).filter(is_of_64_bits)
+}
+
+fn is_of_64_bits(number: &i128) -> bool {
+    number.unsigned_abs() <= u64::MAX.into()
 }
 
 /// Returns a name or a text. Digits beside a text say which bytes fill it up.
@@ -308,12 +342,8 @@ fn raw(value: &RawValue) -> Result<Input, String> {
     if let Some(digits) = string(value) {
         return Ok(Input::Bytes { bytes: long_bytes(&digits)?, text: None });
     }
-    whole(value).map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
-}
-
-/// Returns a number that is written without a point and without an exponent, if it lies within 64 bits and a sign.
-fn whole(value: &RawValue) -> Option<i128> {
-    value.get().parse().ok().filter(|number: &i128| number.unsigned_abs() <= u64::MAX.into())
+    let whole = value.get().parse().ok().filter(is_of_64_bits).map(Input::Raw);
+    whole.ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
 }
 
 /// Returns the text that a JSON text stands for.

@@ -45,7 +45,7 @@ fn a_line_of_decode_is_read_whole() {
         identifier: pairs(&[("error", 0), ("device", 10)]),
         selectors: pairs(&[("function", 3)]),
         signals: vec![
-            ("voltage".to_owned(), Input::Number(500.0)),
+            ("voltage".to_owned(), Input::Integer(500)),
             ("state".to_owned(), Input::Status { set: vec!["on".to_owned()], unknown: 32 }),
         ],
         arrays: Vec::new(),
@@ -89,11 +89,11 @@ fn a_stamp_is_kept_as_it_is_written() {
 fn an_integer_is_not_a_floating_point_number() {
     assert_eq!(input(r#"{"value":2}"#), Ok(Input::Integer(2)));
     assert_eq!(input(r#"{"value":-2}"#), Ok(Input::Integer(-2)));
-    assert_eq!(input(r#"{"value":2.0}"#), Ok(Input::Number(2.0)));
+    assert_eq!(input(r#"{"value":2.5}"#), Ok(Input::Number(2.5)));
     assert_eq!(input(r#"{"value":18446744073709551615}"#), Ok(Input::Integer(u64::MAX.into())));
     assert_eq!(input(r#"{"value":"on"}"#), Ok(Input::Text("on".to_owned())));
     // A double has a zero below zero.
-    assert_eq!(input(r#"{"value":0}"#), Ok(Input::Integer(0)));
+    assert_eq!(input(r#"{"value":0}"#), Ok(Input::Number(0.0)));
     assert!(matches!(input(r#"{"value":-0}"#), Ok(Input::Number(zero)) if zero.is_sign_negative()));
 }
 
@@ -106,6 +106,38 @@ fn an_integer_that_no_double_has_is_not_rounded() {
     let why = "signal `s`: `raw` is an integer of up to 64 bits, not 18446744073709551616";
     assert_eq!(input(r#"{"raw":18446744073709551616}"#), Err(why.to_owned()));
     assert_eq!(input(r#"{"value":1e400}"#), Err("signal `s`: `value` is no number of 64 bits".to_owned()));
+}
+
+#[test]
+fn a_whole_number_keeps_its_digits_however_it_is_written() {
+    let value = |text: &str| input(&format!(r#"{{"value":{text}}}"#));
+    let just_beyond = i128::from(i64::MIN) - 1;
+    for text in ["-9223372036854775809.0", "-9.223372036854775809e18", "-92233720368547758090E-1"] {
+        assert_eq!(value(text), Ok(Input::Integer(just_beyond)), "{text}");
+    }
+    // 2^53 + 1 is no double.
+    for text in ["9007199254740993.0", "9007199254740993e0", "9.007199254740993e+15", "900719925474099300e-2"] {
+        assert_eq!(value(text), Ok(Input::Integer(9_007_199_254_740_993)), "{text}");
+    }
+    assert_eq!(value("18446744073709551615.0"), Ok(Input::Integer(u64::MAX.into())));
+    assert_eq!(value("18446744073709551616.0"), Ok(Input::Number(2_f64.powi(64))));
+    assert_eq!(value(&format!("2.{}", "0".repeat(60))), Ok(Input::Integer(2)));
+    assert_eq!(value("1e2"), Ok(Input::Integer(100)));
+    assert_eq!(value("1e300"), Ok(Input::Number(1e300)));
+    assert_eq!(value("0e99999999999999999999"), Ok(Input::Number(0.0)));
+    assert!(matches!(value("-0.0"), Ok(Input::Number(zero)) if zero.is_sign_negative()));
+}
+
+#[test]
+fn a_fraction_that_no_double_has_is_refused_and_not_rounded() {
+    let value = |text: &str| input(&format!(r#"{{"value":{text}}}"#));
+    assert_eq!(value("4503599627370495.5"), Ok(Input::Number(4_503_599_627_370_495.5)));
+    for text in ["4503599627370496.5", "-9223372036854775808.5", "4.5035996273704965e15"] {
+        let why = format!("signal `s`: `value` is {text}; numbers of that size are whole");
+        assert_eq!(value(text), Err(why));
+    }
+    // A double that another program writes with all its digits has none.
+    assert_eq!(value("340282346638528859811704183484516925440.0"), Ok(Input::Number(f32::MAX.into())));
 }
 
 #[test]
