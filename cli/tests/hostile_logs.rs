@@ -79,6 +79,29 @@ fn a_long_stamp_costs_its_line_alone() {
 }
 
 #[test]
+fn an_input_without_decoded_lines_is_refused_once_and_a_bad_line_among_them_alone() {
+    let encoded = |lines: &str| {
+        let folder = folder();
+        fs::write(folder.path().join("frames.jsonl"), lines).expect("the folder can be written");
+        let output = canspec(folder.path(), &["encode", "--protocol", "infy", "--from", "jsonl", "frames.jsonl"]);
+        assert_eq!(output.status.code(), Some(1));
+        (text(&output.stdout), text(&output.stderr))
+    };
+    let (out, told) = encoded(&"(1.0) can0 0283F000#43FA000040600000\n".repeat(30_000));
+    let why = "canspec: frames.jsonl: 100 lines cannot be read, and none before them can; the first: the line is no JSON \
+               object: expected value (column 1); `--from jsonl` reads what `canspec decode --format jsonl` writes\n";
+    assert_eq!((out.as_str(), told.as_str()), ("", why));
+    let foreign = r#"{"message":null,"problem":{"kind":"foreign","text":"t"},"id":"123","data":"00"}"#;
+    let (out, told) = encoded(&format!("{foreign}\n{}", "junk\n".repeat(300)));
+    assert_eq!(out, "123#00\n");
+    assert_eq!((told.lines().count(), told.starts_with("frames.jsonl:2: the line is no JSON object")), (300, true));
+    // These lines can be read, and no message can be made of them.
+    let unknown = foreign.replace("null", "\"x\",\"identifier\":{},\"selectors\":{},\"signals\":{}");
+    let (_, told) = encoded(&format!("{unknown}\n").repeat(300));
+    assert_eq!(told.lines().count(), 300, "{told}");
+}
+
+#[test]
 fn a_byte_order_mark_costs_no_frame() {
     let (shown, told) = decoded(&format!("\u{FEFF}(1.0) can0 {FRAME}\n"));
     assert!(shown.contains("module_output"), "{shown}");

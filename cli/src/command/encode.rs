@@ -250,10 +250,16 @@ fn carrier<'a>(protocol: &'a Protocol, message: &'a str) -> &'a str {
 fn lines(devices: &[Device<'_>], file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(output()?);
     let mut encoder = Encoder::default();
-    Input::open(file)?.each(out, |out, line| {
+    Input::open_lines(file, is_decoded)?.each(out, |out, line| {
         let made = line.text.and_then(|text| encoder.line(devices, text))?;
         Ok(out.write_all(made.as_bytes()))
     })
+}
+
+/// Tests whether a line that can be read is not blank. What cannot be read is mostly another kind of file.
+fn is_decoded(text: &str) -> Result<bool, String> {
+    let hint = |why| format!("{why}; `--from jsonl` reads what `canspec decode --format jsonl` writes");
+    Line::read(text).map(|line| line.is_some()).map_err(hint)
 }
 
 /// Returns the protocol that a line names. A line without a name is of the only protocol.

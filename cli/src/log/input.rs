@@ -56,7 +56,7 @@ pub struct Input {
     line: Vec<u8>,
     /// How many bytes there are, where that is known.
     length: Option<u64>,
-    /// Whether it is a log; `None` if nothing says that it should be one.
+    /// Whether its lines are what they should be; `None` if nothing says that.
     doubt: Option<Doubt>,
     /// The output comes when all is read.
     is_summed_up: bool,
@@ -116,7 +116,7 @@ impl Input {
     /// # Errors
     ///
     /// Where the file cannot be opened.
-    pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
+    fn open(path: Option<&Path>) -> Result<Self, Failure> {
         match path.filter(|path| *path != Path::new("-")) {
             None => Ok(Self {
                 file: identity(Path::new("/dev/stdin")),
@@ -136,7 +136,16 @@ impl Input {
     ///
     /// Where the file cannot be opened.
     pub fn open_log(path: Option<&Path>) -> Result<Self, Failure> {
-        Ok(Self { doubt: Some(Doubt::default()), ..Self::open(path)? })
+        Ok(Self { doubt: Some(Doubt::of_log()), ..Self::open(path)? })
+    }
+
+    /// Opens a file of lines that `read` can read, as [`Doubt::of_lines`] says.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be opened.
+    pub fn open_lines(path: Option<&Path>, read: fn(&str) -> Result<bool, String>) -> Result<Self, Failure> {
+        Ok(Self { doubt: Some(Doubt::of_lines(read)), ..Self::open(path)? })
     }
 
     /// Opens a log that is shown when all is read. Ctrl-C ends standard input, as its end does.
