@@ -8,7 +8,8 @@ use canspec_codegen::rules::RULES;
 use clap::Args;
 
 use crate::failure::{Failure, Finish};
-use crate::output::output;
+use crate::output::{self, output};
+use crate::show::columns::{self, Columns};
 
 /// Explain the rules that a spec must keep, and the notes on frames.
 ///
@@ -33,7 +34,7 @@ impl Rules {
                 if documents.is_empty() {
                     return Err(Failure::Call(unknown(name)));
                 }
-                write!(out, "{}", documents.join("\n"))?;
+                document(&mut out, output::width(), &documents.join("\n"))?;
             }
         }
         Ok(Finish::Done)
@@ -50,9 +51,36 @@ fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
 }
 
 fn list(out: &mut impl Write) -> io::Result<()> {
-    let width = all().map(|(name, _)| name.len()).max().unwrap_or_default();
-    let summary = |document: &'static str| document.lines().next().unwrap_or_default();
-    all().try_for_each(|(name, document)| writeln!(out, "{name:width$}  {}", summary(document)))
+    let mut columns = Columns::new(&[""]).within(output::width());
+    all().for_each(|(name, _)| columns.widen(&[name]));
+    let mut text = Vec::new();
+    for (name, document) in all() {
+        let mut lines = columns.row(&mut text, &[name]);
+        lines.add(document.lines().next().unwrap_or_default(), "");
+        lines.end();
+    }
+    out.write_all(&text)
+}
+
+/// Writes a document. On a terminal that is too narrow, paragraphs are as wide as that, and code stays as it is.
+fn document(out: &mut impl Write, terminal: Option<usize>, text: &str) -> io::Result<()> {
+    if terminal.is_none_or(|terminal| text.lines().all(|line| line.len() <= terminal)) {
+        return write!(out, "{text}");
+    }
+    let (mut is_code, mut paragraph) = (false, Vec::new());
+    for line in text.lines() {
+        let is_fence = line.starts_with("```");
+        is_code ^= is_fence;
+        if !is_code && !is_fence && !line.is_empty() {
+            paragraph.push(line);
+            continue;
+        }
+        if !paragraph.is_empty() {
+            columns::text_within(terminal, out, &std::mem::take(&mut paragraph).join(" "))?;
+        }
+        writeln!(out, "{line}")?;
+    }
+    if paragraph.is_empty() { Ok(()) } else { columns::text_within(terminal, out, &paragraph.join(" ")) }
 }
 
 fn unknown(name: &str) -> String {
@@ -60,4 +88,23 @@ fn unknown(name: &str) -> String {
     let help =
         nearest.map_or_else(|| "`canspec rules` lists them".to_owned(), |known| format!("did you mean `{known}`?"));
     format!("there is no rule and no note `{name}`; {help}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::document;
+
+    #[test]
+    fn a_paragraph_is_as_wide_as_the_terminal_and_code_as_it_is() {
+        let code = format!("```yaml\nkey: {}\n\nother: 1\n```\n", "word ".repeat(12));
+        let text = format!("one two three\nfour five six seven eight nine ten\n\nten\n\n{code}\nthe\nend\n");
+        let shown = |terminal| {
+            let mut out = Vec::new();
+            document(&mut out, terminal, &text).expect("a vector takes everything");
+            String::from_utf8(out).expect("it is text")
+        };
+        assert_eq!([shown(None), shown(Some(100))], [text.clone(), text.clone()]);
+        let narrow = "one two three four five six seven eight\nnine ten\n\nten\n\n";
+        assert_eq!(shown(Some(40)), format!("{narrow}{code}\nthe end\n"));
+    }
 }

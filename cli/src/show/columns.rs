@@ -1,6 +1,7 @@
 //! Plain text in aligned columns. The last column is wrapped.
 
 use std::io::{self, Write};
+use std::iter;
 
 use crate::output;
 
@@ -19,14 +20,14 @@ const GAP: &str = "  ";
 pub struct Columns {
     /// The widths of all columns but the last.
     widths: Vec<usize>,
-    /// The width of a whole line.
-    line: usize,
+    /// The width of the terminal, if there is one.
+    terminal: Option<usize>,
 }
 
 impl Columns {
     /// Makes columns as wide as their headings.
     pub fn new(headings: &[&str]) -> Self {
-        let mut columns = Self { widths: vec![0; headings.len()], line: WIDTH };
+        let mut columns = Self { widths: vec![0; headings.len()], terminal: None };
         columns.widen(headings);
         columns
     }
@@ -34,7 +35,7 @@ impl Columns {
     /// Keeps to the width of a terminal, if there is one.
     #[must_use]
     pub fn within(self, terminal: Option<usize>) -> Self {
-        Self { line: terminal.unwrap_or(self.line), ..self }
+        Self { terminal, ..self }
     }
 
     /// Makes room for these cells.
@@ -79,10 +80,32 @@ impl Columns {
 
     /// Begins the last column of a row whose cells are filled. `line` is where it begins in the text.
     pub fn lines<'a>(&self, text: &'a mut Vec<u8>, line: usize) -> Lines<'a> {
-        let beside = self.left();
-        let is_beside = beside + NARROWEST <= self.line || self.line >= WIDTH;
+        let (beside, whole) = (self.left(), self.terminal.unwrap_or(WIDTH));
+        let line = match self.terminal {
+            Some(terminal) if beside > terminal + GAP.len() => self.fold(text, line, terminal),
+            _ => line,
+        };
+        let is_beside = beside == 0 || beside + NARROWEST <= whole || self.terminal.is_none();
         let (left, first) = if is_beside { (beside, Some(text.len())) } else { (INDENT, None) };
-        Lines { left, room: self.line.saturating_sub(left).max(NARROWEST), line, first, width: None, text }
+        let room = whole.saturating_sub(left).max(NARROWEST);
+        Lines { left, room, is_on_terminal: self.terminal.is_some(), line, first, width: None, text }
+    }
+
+    /// Parts the cells of a row into lines of a terminal, and returns where the last one begins.
+    fn fold(&self, text: &mut Vec<u8>, line: usize, terminal: usize) -> usize {
+        let row = String::from_utf8_lossy(&text.split_off(line)).into_owned();
+        let (mut rest, mut line, mut place) = (row.as_str(), line, 0);
+        for column in &self.widths {
+            let (cell, others) = rest.split_at(cell_end(rest, column + GAP.len()));
+            if place > INDENT && place + column > terminal {
+                line = end_line(text, line);
+                text.resize(line + INDENT, b' ');
+                place = INDENT;
+            }
+            text.extend_from_slice(cell.as_bytes());
+            (rest, place) = (others, place + width(cell.as_bytes()));
+        }
+        line
     }
 
     /// Returns the widths of all columns but the last.
@@ -102,6 +125,26 @@ fn width(text: &[u8]) -> usize {
     if text.is_ascii() { text.len() } else { text.iter().filter(begins).count() }
 }
 
+/// Returns where a cell ends that is `width` characters wide, or wider without a blank there.
+fn cell_end(row: &str, width: usize) -> usize {
+    let mut last = ' ';
+    let mut letters = row.char_indices().enumerate();
+    let next = letters.find(|(count, (_, letter))| {
+        let is_after = *count >= width && last == ' ' && (*count == width || *letter != ' ');
+        last = *letter;
+        is_after
+    });
+    next.map_or(row.len(), |(_, (place, _))| place)
+}
+
+/// Ends a line of a text without the blanks at its end, and returns where the next one begins.
+fn end_line(text: &mut Vec<u8>, line: usize) -> usize {
+    let length = text[line..].trim_ascii_end().len();
+    text.truncate(line + length);
+    text.push(b'\n');
+    text.len()
+}
+
 /// A row whose last column is filled item by item.
 pub struct Lines<'a> {
     text: &'a mut Vec<u8>,
@@ -109,6 +152,8 @@ pub struct Lines<'a> {
     left: usize,
     /// The width of the last column.
     room: usize,
+    /// An item that is wider than the column is parted.
+    is_on_terminal: bool,
     /// Where the last line begins in the text.
     line: usize,
     /// Where the last column begins in the text, if it stands beside the others.
@@ -118,13 +163,24 @@ pub struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// Adds an item to the last line, or a new line if it would become wider than the column.
+    /// Adds an item to the last line, or a new line if it would become wider than the column. On a terminal, an item that
+    /// is wider than the column is parted into its words.
     pub fn add(&mut self, item: &str, separator: &str) {
-        if let Some(line) = &mut self.width {
-            *line += width(separator.as_bytes());
-            self.text.extend_from_slice(separator.as_bytes());
+        let needs_line = self.first.is_none() && self.width.is_none();
+        if needs_line && item.is_empty() {
+            return;
         }
-        self.place(self.room, |text| text.extend_from_slice(item.as_bytes()));
+        let behind = if self.is_on_terminal { width(separator.trim_end().as_bytes()) } else { 0 };
+        let room = self.room - behind;
+        let is_parted = self.is_on_terminal && width(item.as_bytes()) > room;
+        let words = item.splitn(if is_parted { usize::MAX } else { 1 }, ' ');
+        for (word, separator) in words.zip(iter::once(separator).chain(iter::repeat(" "))) {
+            if let Some(line) = &mut self.width {
+                *line += width(separator.as_bytes());
+                self.text.extend_from_slice(separator.as_bytes());
+            }
+            self.place(room, |text| text.extend_from_slice(word.as_bytes()));
+        }
     }
 
     /// Adds the words of a sentence, which begins a line.
@@ -160,16 +216,35 @@ impl Lines<'_> {
 
     /// Ends the last line, without the blanks at its end.
     fn end_line(&mut self) {
-        let length = self.text[self.line..].trim_ascii_end().len();
-        self.text.truncate(self.line + length);
-        self.text.push(b'\n');
-        self.line = self.text.len();
+        self.line = end_line(self.text, self.line);
     }
 
     /// Ends the row.
     pub fn end(mut self) {
         self.end_line();
     }
+}
+
+/// Writes a running text, in lines as wide as the terminal if there is one.
+///
+/// # Errors
+///
+/// Where `out` cannot be written.
+pub fn text(out: &mut impl Write, text: &str) -> io::Result<()> {
+    text_within(output::width(), out, text)
+}
+
+/// Writes a running text, in lines as wide as a terminal if one is given.
+///
+/// # Errors
+///
+/// Where `out` cannot be written.
+pub fn text_within(terminal: Option<usize>, out: &mut impl Write, text: &str) -> io::Result<()> {
+    let mut written = Vec::new();
+    let mut lines = Columns::new(&[]).within(terminal).row(&mut written, &[]);
+    lines.add(text, "");
+    lines.end();
+    out.write_all(&written)
 }
 
 /// Writes rows of cells, the last cell of each in lines, under their headings.
@@ -274,6 +349,64 @@ mod tests {
             let found: Vec<_> = text.split_whitespace().filter(|word| word.starts_with("word")).collect();
             assert_eq!(found, words, "{terminal}");
         }
+    }
+
+    #[test]
+    fn a_table_parts_no_word_on_a_terminal_and_nothing_elsewhere() {
+        let long = (0..12).map(|number| format!("word{number}")).collect::<Vec<_>>().join(" ");
+        let name = "n".repeat(30);
+        let rows = [row([&"f".repeat(25), &name], &[&long, "°C"]), row(["1", "two words"], &[&long])];
+        let table = |terminal| {
+            let mut out = Vec::new();
+            write_within(terminal, &mut out, &["FIRST", "NAME"], "REST", &rows).expect("a vector takes everything");
+            String::from_utf8(out).expect("columns are text")
+        };
+        for terminal in [150, 120, 80, 60, 57, 56, 45] {
+            let shown = table(Some(terminal));
+            let widest = shown.lines().map(|line| width(line.as_bytes())).max().unwrap_or_default();
+            assert!(widest <= terminal, "{terminal}: {shown}");
+            let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+            assert_eq!(words(&shown), words(&table(None)), "{terminal}");
+        }
+        assert_eq!(table(Some(45)).lines().take(3).collect::<Vec<_>>(), ["FIRST", "    NAME", "    REST"]);
+        assert_eq!(table(None).lines().count(), 3);
+    }
+
+    #[test]
+    fn a_word_that_is_wider_than_a_terminal_is_not_parted() {
+        let wide = "w".repeat(WIDEST + 9);
+        let mut out = Vec::new();
+        let rows = [row([&wide, "x"], &["a"])];
+        write_within(Some(50), &mut out, &["A", "NAME"], "REST", &rows).expect("a vector takes everything");
+        let text = String::from_utf8(out).expect("columns are text");
+        assert_eq!(text, format!("A\n    NAME\n    REST\n{wide}\n    x\n    a\n"));
+    }
+
+    #[test]
+    fn nothing_takes_no_line_below_the_cells() {
+        let rows = [row(["1", "x"], &[""]), row(["2", "y"], &["a"])];
+        let shown = |terminal| {
+            let mut out = Vec::new();
+            write_within(Some(terminal), &mut out, &["A", "NAME"], "REST", &rows).expect("a vector takes everything");
+            String::from_utf8(out).expect("columns are text")
+        };
+        assert_eq!(shown(48), "A  NAME\n    REST\n1  x\n2  y\n    a\n");
+        assert_eq!(shown(49), "A  NAME  REST\n1  x\n2  y     a\n");
+    }
+
+    #[test]
+    fn a_running_text_is_as_wide_as_the_terminal() {
+        let shown = |terminal, text: &str| {
+            let mut out = Vec::new();
+            text_within(terminal, &mut out, text).expect("a vector takes everything");
+            String::from_utf8(out).expect("it is text")
+        };
+        let text = "words ".repeat(40);
+        assert_eq!(shown(None, &text), format!("{}\n", text.trim_end()));
+        let line = "words ".repeat(10);
+        assert_eq!(shown(Some(60), &text), format!("{}\n", line.trim_end()).repeat(4));
+        // A line is never narrower than 40 characters.
+        assert_eq!(shown(Some(20), "words"), "words\n");
     }
 
     /// Fills a last column of some width.

@@ -5,13 +5,16 @@ use std::io::{self, Write};
 use canspec_codegen::model::{Derivation, Descent, MessageId, Protocol};
 use canspec_codegen::text::Text;
 
+use crate::show::columns;
+
 /// Writes what a spec is based on and what it changes, if it has a base.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let Some(Derivation { base, replaces, removes, .. }) = &protocol.derivation else { return Ok(()) };
-    writeln!(out, "Based on {}.", base.for_people())?;
+    columns::text(out, &format!("Based on {}.", base.for_people()))?;
     for (what, paths) in [("Replaces", replaces), ("Removes", removes)] {
         if !paths.is_empty() {
-            writeln!(out, "{what} {}.", paths.iter().map(Text::for_people).collect::<Vec<_>>().join(", "))?;
+            let paths = paths.iter().map(Text::for_people).collect::<Vec<_>>().join(", ");
+            columns::text(out, &format!("{what} {paths}."))?;
         }
     }
     Ok(())

@@ -5,17 +5,18 @@ use std::io::{self, Write};
 use canspec_codegen::model::{Document, IdentifierField, Protocol};
 
 use super::derivation;
+use crate::show::columns::text;
 
 /// Writes what is true of all messages: documents, sides, bit rates, and the fields of the identifier.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    writeln!(out, "{}: {}", protocol.name, protocol.title.for_people())?;
-    protocol.documents.iter().try_for_each(|known| writeln!(out, "{}", document(known)))?;
-    protocol.sides.sentence().map_or(Ok(()), |sentence| writeln!(out, "{sentence}"))?;
+    text(out, &format!("{}: {}", protocol.name, protocol.title.for_people()))?;
+    protocol.documents.iter().try_for_each(|known| text(out, &document(known)))?;
+    protocol.sides.sentence().map_or(Ok(()), |sentence| text(out, &sentence))?;
     derivation::write(out, protocol)?;
     if !protocol.bit_rates.is_empty() {
-        writeln!(out, "Bit rate: {} kbit/s.", bit_rates(&protocol.bit_rates))?;
+        text(out, &format!("Bit rate: {} kbit/s.", bit_rates(&protocol.bit_rates)))?;
     }
-    writeln!(out, "{}", identifier(protocol))
+    text(out, &identifier(protocol))
 }
 
 /// Writes bit rates in kbit/s.

@@ -18,14 +18,19 @@ pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     writeln!(out)?;
     messages(out, protocol)?;
     if protocol.messages.iter().any(|message| value(message).is_some()) {
-        writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
+        paragraph(out, &format!("A message without signals below it has at most one, called `{VALUE}`."))?;
     }
     reports(out, protocol)?;
     starting(out, protocol)?;
     quantities::write(out, protocol)?;
     models::write(out, protocol, false)?;
     timing::write(out, protocol)?;
-    writeln!(out, "\nNotes, frames and errata: --message NAME for a message, --full for all.")
+    paragraph(out, "Notes, frames and errata: --message NAME for a message, --full for all.")
+}
+
+fn paragraph(out: &mut impl Write, text: &str) -> io::Result<()> {
+    writeln!(out)?;
+    columns::text(out, text)
 }
 
 fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
@@ -58,14 +63,14 @@ fn reports(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     if names.is_empty() {
         return Ok(());
     }
-    writeln!(out, "\nThe {} sends reports by {}.", protocol.sides.controller, names.join(", "))
+    paragraph(out, &format!("The {} sends reports by {}.", protocol.sides.controller, names.join(", ")))
 }
 
 /// Says how a module answers while it starts, if the document has a code for that.
 fn starting(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let code = protocol.error_codes().find_map(|code| Some((code.name, code.starting?)));
     let Some((name, code)) = code else { return Ok(()) };
-    writeln!(out, "\nWhile a {} starts, `{name}` of its replies is {code}.", protocol.sides.module)
+    paragraph(out, &format!("While a {} starts, `{name}` of its replies is {code}.", protocol.sides.module))
 }
 
 /// Returns the selectors whose constants choose a message, whatever its access.
