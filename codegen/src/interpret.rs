@@ -132,14 +132,27 @@ pub struct Decoded {
 }
 
 impl Decoded {
-    /// Takes out the signals of a frame that the chosen device model does not have, if no bit shows them.
+    /// Takes out the signals that the chosen device model does not have, if no bit shows them.
     pub fn hide_lacking(&mut self, protocol: &Protocol) {
-        let Some(model) = self.model.filter(|_| self.long.is_none()) else { return };
-        let message = &protocol[self.message];
+        let Some(model) = self.model else { return };
+        let message = self.content(protocol);
         self.signals.retain(|reading| {
             let signal = &message[reading.signal];
-            signal.is_of(model) || protocol.lack(message, signal, model, reading.bits).is_some()
+            let mut words = reading.words(signal);
+            signal.is_of(model) || words.any(|bits| protocol.lack(message, signal, model, bits).is_some())
         });
+    }
+
+    /// Tests whether `length` data bytes are more than the message has without some signal that they reach, and that is
+    /// hidden since the chosen device model does not have it.
+    pub fn is_length_hidden(&self, protocol: &Protocol, length: usize) -> bool {
+        let (message, Some(model)) = (self.content(protocol), self.model) else { return false };
+        let shortest = self.long.map_or(message.shortest().into(), |long| protocol[long].shortest_sent());
+        let is_hidden = |id: SignalId| self.signals.iter().all(|reading| reading.signal != id);
+        message.signals.entries().filter(|(_, signal)| !signal.is_of(model)).any(|(id, signal)| {
+            let reach = signal.reach_with(length.checked_sub(signal.window.into()));
+            (shortest + 1..=length).contains(&reach) && is_hidden(id)
+        })
     }
 
     /// Returns the message that has the signals: that of the frame, or what its parts carry together.
@@ -202,6 +215,11 @@ impl Reading {
     /// Returns what the bytes of a run say.
     pub fn of_bytes((id, signal): (SignalId, &Signal), bytes: Vec<u8>) -> Self {
         Self { signal: id, bits: 0, value: value_of_bytes(signal, &bytes), bytes }
+    }
+
+    /// Returns how many data bytes reach to its end.
+    fn reach(&self, signal: &Signal) -> usize {
+        signal.reach_with(Some(self.bytes.len()))
     }
 
     /// Returns the bits, or those of each byte of a run.

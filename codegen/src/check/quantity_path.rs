@@ -237,7 +237,7 @@ fn unsendable(protocol: &Protocol, message: MessageId, signal: SignalId, bits: u
     let unknown = models.is_empty() || !message[signal].encoding.by_model().is_empty();
     unknown.then_some(None).into_iter().chain(models).find_map(|model| {
         let reading = Reading::of(protocol, (signal, message[signal].on(model)), bits);
-        let text = signal_note(protocol, message, model, &reading)?.text;
+        let text = signal_note(protocol, (message, message.shortest().into()), model, &reading)?.text;
         Some(model.map_or_else(|| text.clone(), |model| format!("on {}: {text}", protocol[model].name)))
     })
 }

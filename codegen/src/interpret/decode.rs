@@ -338,7 +338,8 @@ impl<'a> Decoder<'a, '_> {
         let mut notes = Vec::new();
         self.error_notes(&mut notes, frame, &selectors);
         self.address_notes(&mut notes, message, frame, addressing);
-        let note = |reading: &Reading| signal_note(self.protocol, message, self.model, reading);
+        let note =
+            |reading: &Reading| signal_note(self.protocol, (message, message.shortest().into()), self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));
         notes.extend(self.reserved_note(frame, reserved));

@@ -78,7 +78,7 @@ fn encode_parts(
     let (whole, reserved) = ((known.whole(), [0; 8]), Some(&*content.reserved));
     let data = long::joined(protocol, whole, &content.signals, reserved, (model, Limits::Bits))?;
     // Nothing says whether elements at the end are real, so what looks like filling is tested against no limits.
-    let real = long::real(known, &data, &content.signals);
+    let real = long::real(known, model, &data, &content.signals);
     long::joined(protocol, whole, &real, reserved, (model, Limits::of(layout, model)))?;
     let (mut frames, layout) = (Vec::new(), long::without_data(parts, layout));
     for (number, data) in long::parts(known, model, &data)? {
@@ -248,9 +248,8 @@ fn put_signals(
     let signals = layout.signals.iter().map(|id| &message[*id]);
     for signal in signals.filter(|signal| usize::from(signal.end()) <= length) {
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
-        let blank = model.filter(|model| given.is_none() && !signal.is_of(*model));
-        if let Some(lacking) = blank.and_then(|model| protocol.lacking(message, signal, model)) {
-            signal.place.put(data, lacking.blank);
+        if let Some(blank) = model.and_then(|model| message.blank(signal, model)).filter(|_| given.is_none()) {
+            signal.place.put(data, blank);
             continue;
         }
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;

@@ -10,7 +10,8 @@ use super::refusal::{refuse, twice};
 use super::value::{Limits, bytes_of, raw_of};
 use super::{Frame, Input, Note, Reading, Refusal};
 use crate::model::{
-    Announcement, Extent, FrameLayout, LongMessage, ModelId, NoteRule, Parts, Protocol, Signal, SignalId, TextForm,
+    Announcement, Extent, FrameLayout, LongMessage, Message, ModelId, NoteRule, Parts, Protocol, Signal, SignalId,
+    TextForm,
 };
 use crate::words::hex;
 
@@ -57,9 +58,10 @@ impl Joined {
                 Reading::of(protocol, (id, signal.on(model)), bits)
             })
             .collect();
-        let note = |reading: &Reading| signal_note(protocol, content, model, reading);
+        let shortest = extent.long().shortest_sent();
+        let note = |reading: &Reading| signal_note(protocol, (content, shortest), model, reading);
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
-        notes.extend(self.count_note(extent));
+        notes.extend(self.count_note(extent, model));
         let covered = signals.iter().map(|known| (&content[known.signal], Some(known.bytes.len())));
         let reserved = without(&self.data, extent, covered);
         notes.extend(self.reserved_note(extent));
@@ -80,9 +82,13 @@ impl Joined {
         came.iter().all(|came| *came).then_some(bytes)
     }
 
-    /// Notes that some of the elements may be none.
-    fn count_note(&self, extent: Extent) -> Option<Note> {
+    /// Notes that some of the elements may be none, if the device model has any.
+    fn count_note(&self, extent: Extent, model: Option<ModelId>) -> Option<Note> {
         let field = extent.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
+        let is_had = |signal: &Signal| model.is_none_or(|model| signal.is_of(model));
+        if !extent.signals().any(|(_, signal)| extent.long().varies(signal) && is_had(signal)) {
+            return None;
+        }
         let what = if field.is_text { "bytes" } else { "elements" };
         let text = format!("nothing says how many of the {what} of `{}` are real", field.name);
         Some(Note { rule: NoteRule::Count, text })
@@ -129,7 +135,8 @@ fn window(data: &[u8], signal: &Signal) -> [u8; 8] {
 
 /// Makes the data of a long message. `header` has the bits of its constants and selectors. Elements of the array of varying
 /// length may be missing at its end, and so may what lies beyond the shortest length. Without `reserved`, bits that nothing
-/// covers are as they are sent, and a signal that is left out takes its default.
+/// covers are as they are sent, and a signal that is left out takes its default. One that the device model does not have
+/// may always be left out.
 pub fn joined(
     protocol: &Protocol,
     (extent, header): (Extent, [u8; 8]),
@@ -137,17 +144,10 @@ pub fn joined(
     reserved: Option<&[u8]>,
     (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
+    let given = Given { protocol, extent, inputs: known(extent, given)?, reserved, model, limits };
     let (long, content) = (extent.long(), &extent.long().content);
-    let given = known(extent, given)?;
-    let is_given = |signal: &Signal| given.contains_key(&*signal.name);
-    let missing = |signal: &Signal| refuse(content, &format!("the signal `{}` is missing", signal.name));
-    let text = |signal: &Signal| {
-        let input = given.get(&*signal.name).ok_or_else(|| missing(signal))?;
-        bytes_of(protocol, content, signal, input, limits)
-    };
-    let open = extent.open_text().map(|(signal, _)| text(signal)).transpose()?;
-    let count = open.map(|bytes| bytes.len()).or_else(|| count(extent, is_given));
-    let mut data = vec![0; length(extent, count, reserved.unwrap_or_default().len(), is_given)?];
+    let count = given.count()?;
+    let mut data = vec![0; given.length(count)?];
     if reserved.is_none() && content.reserved.are_ones {
         data.fill(0xFF);
     }
@@ -155,17 +155,15 @@ pub fn joined(
     for (byte, (bits, mask)) in data.iter_mut().zip(header.into_iter().zip(extent.header().to_be_bytes())) {
         *byte = *byte & !mask | bits & mask;
     }
-    let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach_with(count) <= data.len();
+    let is_meant = |signal: &Signal| long.is_among(count, signal) || given.blank(signal).is_some();
+    let is_there = |signal: &&Signal| is_meant(signal) && signal.reach_with(count) <= data.len();
     for signal in extent.signals().map(|(_, signal)| signal).filter(is_there).collect::<Vec<_>>() {
         let places = data.iter_mut().skip(signal.window.into());
         if signal.run.is_some() {
-            places.zip(text(signal)?).for_each(|(place, byte)| *place = byte);
+            places.zip(given.text(signal)?).for_each(|(place, byte)| *place = byte);
             continue;
         }
-        let has_default = reserved.is_none() && long.counted(signal).is_none();
-        let default = signal.default_for(model).filter(|_| has_default).map(Input::Raw);
-        let input = given.get(&*signal.name).copied().or(default.as_ref()).ok_or_else(|| missing(signal))?;
-        let bits = raw_of(protocol, content, signal.on(model), input, limits)?;
+        let bits = given.bits(signal)?;
         let mut bytes = window(&data, signal);
         signal.place.put(&mut bytes, bits);
         data.iter_mut().skip(signal.window.into()).zip(bytes).for_each(|(byte, new)| *byte = new);
@@ -182,36 +180,95 @@ fn known<'g>(extent: Extent, given: &'g [(String, Input)]) -> Result<HashMap<&'g
     }
 }
 
-/// Returns how many elements the arrays of varying length have, if there are any.
-fn count(extent: Extent, is_given: impl Fn(&Signal) -> bool) -> Option<usize> {
-    let given = extent.signals().map(|(_, signal)| signal).filter(|signal| is_given(signal));
-    let given = given.filter_map(|signal| extent.long().counted(signal)).map(|index| index + 1).max();
-    extent.varying().map(|array| given.unwrap_or(0).max(array.least))
+/// What is given for the data of a long message.
+struct Given<'a> {
+    protocol: &'a Protocol,
+    extent: Extent<'a>,
+    /// Values by the names of their signals.
+    inputs: HashMap<&'a str, &'a Input>,
+    reserved: Option<&'a [u8]>,
+    model: Option<ModelId>,
+    limits: Limits,
 }
 
-/// Returns how many bytes a long message has with these signals, or at least these reserved bytes.
-fn length(
-    extent: Extent,
-    count: Option<usize>,
-    reserved: usize,
-    is_given: impl Fn(&Signal) -> bool,
-) -> Result<usize, Refusal> {
-    let (long, content) = (extent.long(), &extent.long().content);
-    let too_long = |most: usize| {
-        let text = format!("`reserved` has {reserved} bytes, which are more than {most}");
-        refuse(content, &text)
-    };
-    if extent.lengths().is_empty() {
-        let length = extent.bytes_with(count).max(reserved);
-        let most = match long.parts() {
-            Some(parts) if parts.length.is_none() => long.parts_of(long.longest()) * long.size(),
-            _ => extent.bytes_with(count),
-        };
-        return if length > most { Err(too_long(most)) } else { Ok(length) };
+impl Given<'_> {
+    fn content(&self) -> &Message {
+        &self.extent.long().content
     }
-    let given = content.signals.iter().filter(|signal| is_given(signal)).map(Signal::reach).max().unwrap_or(0);
-    let mut lengths = extent.lengths().iter().map(|length| usize::from(*length));
-    lengths.find(|length| *length >= given.max(reserved)).ok_or_else(|| too_long(extent.longest()))
+
+    fn has(&self, signal: &Signal) -> bool {
+        self.inputs.contains_key(&*signal.name)
+    }
+
+    /// Returns the least number of bytes, which is that of the reserved ones.
+    fn told(&self) -> usize {
+        self.reserved.unwrap_or_default().len()
+    }
+
+    /// Returns the bits of a signal that is left out since the device model does not have it.
+    fn blank(&self, signal: &Signal) -> Option<u64> {
+        self.content().blank(signal, self.model?).filter(|_| !self.has(signal))
+    }
+
+    fn missing(&self, signal: &Signal) -> Refusal {
+        refuse(self.content(), &format!("the signal `{}` is missing", signal.name))
+    }
+
+    /// Returns the bytes of a text.
+    fn text(&self, signal: &Signal) -> Result<Vec<u8>, Refusal> {
+        if let Some(blank) = self.blank(signal) {
+            let start = usize::from(signal.window);
+            let bytes = signal.reach_with(Some(self.told().saturating_sub(start))) - start;
+            return Ok(vec![u8::try_from(blank).unwrap_or(u8::MAX); bytes]);
+        }
+        let input = self.inputs.get(&*signal.name).ok_or_else(|| self.missing(signal))?;
+        bytes_of(self.protocol, self.content(), signal, input, self.limits)
+    }
+
+    /// Returns the bits of any other signal.
+    fn bits(&self, signal: &Signal) -> Result<u64, Refusal> {
+        if let Some(blank) = self.blank(signal) {
+            return Ok(blank);
+        }
+        let has_default = self.reserved.is_none() && self.extent.long().counted(signal).is_none();
+        let default = signal.default_for(self.model).filter(|_| has_default).map(Input::Raw);
+        let input = self.inputs.get(&*signal.name).copied().or(default.as_ref());
+        let input = input.ok_or_else(|| self.missing(signal))?;
+        raw_of(self.protocol, self.content(), signal.on(self.model), input, self.limits)
+    }
+
+    /// Returns how many elements the arrays of varying length have, or how many bytes the open text, if there are any.
+    fn count(&self) -> Result<Option<usize>, Refusal> {
+        if let Some((signal, _)) = self.extent.open_text() {
+            return self.text(signal).map(|bytes| Some(bytes.len()));
+        }
+        let given = self.extent.signals().map(|(_, signal)| signal).filter(|signal| self.has(signal));
+        let given = given.filter_map(|signal| self.extent.long().counted(signal)).map(|index| index + 1).max();
+        Ok(self.extent.varying().map(|array| given.unwrap_or(0).max(array.least)))
+    }
+
+    /// Returns how many bytes the message has, at least those of the reserved ones. What only some device models have is
+    /// there if it is given. Where nothing is reserved, it is also there if the chosen one has it.
+    fn length(&self, count: Option<usize>) -> Result<usize, Refusal> {
+        let Self { extent, model, reserved, .. } = self;
+        let (long, told) = (extent.long(), self.told());
+        let too_long =
+            |most: usize| refuse(&long.content, &format!("`reserved` has {told} bytes, which are more than {most}"));
+        if extent.lengths().is_empty() {
+            let length = extent.bytes_with(count).max(told);
+            let most = match long.parts() {
+                Some(parts) if parts.length.is_none() => long.parts_of(long.longest()) * long.size(),
+                _ => extent.bytes_with(count),
+            };
+            return if length > most { Err(too_long(most)) } else { Ok(length) };
+        }
+        let model = model.filter(|_| reserved.is_none());
+        let is_own = |signal: &Signal| !signal.models.is_empty() && model.is_some_and(|model| signal.is_of(model));
+        let there = long.content.signals.iter().filter(|signal| self.has(signal) || is_own(signal));
+        let needed = there.map(Signal::reach).max().unwrap_or(0).max(told);
+        let mut lengths = extent.lengths().iter().map(|length| usize::from(*length));
+        lengths.find(|length| *length >= needed).ok_or_else(|| too_long(extent.longest()))
+    }
 }
 
 /// Returns the number of each part, and its data.
@@ -220,7 +277,7 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
     })?;
-    let mut parts = filled(long, data);
+    let mut parts = filled(long, model, data);
     if let Some(length) = long.parts().and_then(|parts| parts.length) {
         put_length(length, data.len(), &mut parts);
     }
@@ -249,11 +306,12 @@ fn put_length(length: Announcement, bytes: usize, parts: &mut Vec<u8>) {
 }
 
 /// Fills up the last part.
-fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
+fn filled(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Vec<u8> {
     let head = long.parts().map_or(0, Parts::head);
     let (mut whole, length) = (data.to_vec(), long.parts_of(data.len()) * long.size() - head);
     if head == 0
         && let Some((text, _)) = long.open_text()
+        && model.is_none_or(|model| text.is_of(model))
         && let Some(TextForm::Ascii { fill }) = text.encoding.text_form()
     {
         whole.resize(text.reach().min(length).max(data.len()), fill);
@@ -264,13 +322,18 @@ fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
 
 /// Returns what is given without those elements at the end that look like what fills up the last part. A message that
 /// says its length has none.
-pub fn real(long: &LongMessage, data: &[u8], given: &[(String, Input)]) -> Vec<(String, Input)> {
+pub fn real(
+    long: &LongMessage,
+    model: Option<ModelId>,
+    data: &[u8],
+    given: &[(String, Input)],
+) -> Vec<(String, Input)> {
     let is_open = long.parts().is_some_and(|parts| parts.length.is_none());
     let array = long.varying().filter(|field| is_open && !field.is_text);
-    let whole = filled(long, data);
+    let whole = filled(long, model, data);
     let is_enough = |count: &usize| {
         let start = data.get(..long.bytes_with(Some(*count)));
-        start.is_some_and(|start| filled(long, start) == whole)
+        start.is_some_and(|start| filled(long, model, start) == whole)
     };
     let count = array.and_then(|array| (array.least..array.most).find(is_enough));
     let is_real = |name: &str| {

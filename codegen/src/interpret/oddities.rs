@@ -6,15 +6,22 @@ use super::{Note, Reading, Value};
 use crate::encoding::Words;
 use crate::model::{Message, ModelId, NoteRule, Protocol, Range, Signal};
 
-/// Notes a value that is odd, or that the device model does not have.
-pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+/// Notes a value that is odd, or that the device model does not have. `shortest` is the least number of data bytes that
+/// carry the message.
+pub fn signal_note(
+    protocol: &Protocol,
+    (message, shortest): (&Message, usize),
+    model: Option<ModelId>,
+    reading: &Reading,
+) -> Option<Note> {
     let signal = message[reading.signal].on(model);
     let lack = |model| reading.words(signal).find_map(|bits| protocol.lack(message, signal, model, bits));
     if let Some(text) = model.and_then(lack) {
         return Some(Note { rule: NoteRule::ModelDependent, text });
     }
     if let Some(model) = model.filter(|model| !signal.is_of(*model)) {
-        return message.is_optional(signal).then(|| longer_note(protocol, signal, model));
+        let is_longer = reading.reach(signal) > shortest;
+        return is_longer.then(|| longer_note(protocol, signal, model));
     }
     let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
     if let Some((rule, text)) = oddity {
@@ -27,9 +34,9 @@ pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId
     }
 }
 
-/// Says that a frame is long enough for a signal that the device model does not have.
+/// Says that a message is long enough for a signal that the device model does not have.
 fn longer_note(protocol: &Protocol, signal: &Signal, model: ModelId) -> Note {
-    let text = format!("{} has no `{}`, for which the frame is long enough", protocol[model].name, signal.name);
+    let text = format!("{} has no `{}`, for which the message is long enough", protocol[model].name, signal.name);
     Note { rule: NoteRule::ModelDependent, text }
 }
 

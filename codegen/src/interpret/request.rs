@@ -397,13 +397,12 @@ pub fn put_signals(
         return Err(refuse(message, &format!("the signal `{name}` is given twice")));
     }
     for signal in carried.into_iter().filter(|signal| usize::from(signal.end()) <= length) {
-        let is_given = given.iter().any(|(name, _)| *name == signal.name);
-        let lacking = model.and_then(|model| protocol.lacking(message, signal, model)).filter(|_| !is_given);
-        if let Some(lacking) = lacking.filter(|lacking| !signal.is_of(lacking.model)) {
-            signal.place.put(data, lacking.blank);
+        let given = given.iter().find(|(name, _)| *name == signal.name);
+        if let Some(blank) = model.and_then(|model| message.blank(signal, model)).filter(|_| given.is_none()) {
+            signal.place.put(data, blank);
             continue;
         }
-        let input = match given.iter().find(|(name, _)| *name == signal.name) {
+        let input = match given {
             Some((_, text)) => typed(protocol, message, signal.on(model), text)?,
             None => Input::Raw(
                 signal

@@ -23,6 +23,14 @@ impl Lacking {
     }
 }
 
+impl Message {
+    /// Returns the bits of a signal that a device model does not have; `None` if it has it.
+    pub(crate) fn blank(&self, signal: &Signal, model: ModelId) -> Option<u64> {
+        let blank = if self.reserved.are_ones { signal.place.max() } else { 0 };
+        (!signal.is_of(model)).then_some(blank)
+    }
+}
+
 impl Protocol {
     /// Returns the raw values of a signal that have a name.
     pub fn named_values<'a>(&'a self, signal: &'a Signal) -> &'a [NamedValue] {
@@ -31,9 +39,8 @@ impl Protocol {
 
     /// Returns what a device model does not have of a signal, if there is anything.
     pub fn lacking(&self, message: &Message, signal: &Signal, model: ModelId) -> Option<Lacking> {
-        if !signal.is_of(model) {
+        if let Some(blank) = message.blank(signal, model) {
             let mask = signal.place.max();
-            let blank = if message.reserved.are_ones { mask } else { 0 };
             return Some(Lacking { model, mask, blank, values: Vec::new() });
         }
         let bits = signal.encoding.status_word().into_iter().flat_map(|word| &self[word].bits);

@@ -133,6 +133,13 @@ impl LongMessage {
         self.whole().shortest()
     }
 
+    /// Returns the least number of data bytes that its frames carry, with those that fill up the last part.
+    pub(crate) fn shortest_sent(&self) -> usize {
+        let shortest = self.shortest();
+        let is_filled = self.parts().is_some_and(|parts| parts.length.is_none());
+        if is_filled { self.parts_of(shortest) * self.size() } else { shortest }
+    }
+
     /// Returns the number of data bytes up to the end of the last field that is always there.
     pub fn least(&self) -> usize {
         let text = self.open_text().map_or(0, |(_, run)| run.least.into());
@@ -159,6 +166,11 @@ impl LongMessage {
     pub fn counted(&self, signal: &Signal) -> Option<usize> {
         let element = signal.element?;
         self.content[element.array].least.map(|_| element.index.into())
+    }
+
+    /// Tests whether a signal is one of those whose number or length varies.
+    pub(crate) fn varies(&self, signal: &Signal) -> bool {
+        self.counted(signal).is_some() || signal.run.is_some_and(ByteRun::varies)
     }
 
     /// Returns the first field whose length varies, if there is one. Others vary with it.

@@ -165,11 +165,6 @@ impl Message {
         self.lengths.last().copied().unwrap_or(8)
     }
 
-    /// Tests whether a frame can lack a signal because it is short.
-    pub fn is_optional(&self, signal: &Signal) -> bool {
-        signal.end() > self.shortest()
-    }
-
     /// Returns the message with its signals as a device model has them.
     pub fn on(&self, model: Option<ModelId>) -> Cow<'_, Self> {
         if self.signals.iter().all(|signal| signal.encoding.by_model().is_empty()) {

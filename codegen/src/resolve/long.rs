@@ -8,8 +8,8 @@ use super::leaves::Leaves;
 use super::parts::{PART, numbers};
 use super::window::{MOST_BYTES, Windowed, in_frame};
 use crate::model::{
-    Array, ArrayId, ByteRun, Carrier, LongMessage, LongMessageId, Message, MessageId, Signal, SignalId, Table,
-    TransportId, Varying,
+    Array, ArrayId, Carrier, LongMessage, LongMessageId, Message, MessageId, Signal, SignalId, Table, TransportId,
+    Varying,
 };
 use crate::read::syntax::ast;
 use crate::report::rule::Rule;
@@ -282,9 +282,9 @@ impl Resolver<'_> {
                 "arrays that vary have the same `repeat`, an open text varies alone, and both stand last",
             );
         }
-        let is_its = |signal: &&Signal| long.counted(signal).is_some() || signal.run.is_some_and(ByteRun::varies);
-        let start = content.signals.iter().filter(is_its).map(|signal| signal.bytes().start).min().unwrap_or(0);
-        let mut others = content.signals.iter().filter(|signal| !is_its(signal));
+        let of_it = content.signals.iter().filter(|signal| long.varies(signal));
+        let start = of_it.map(|signal| signal.bytes().start).min().unwrap_or(0);
+        let mut others = content.signals.iter().filter(|signal| !long.varies(signal));
         if let Some(other) = others.find(|signal| signal.reach() > start) {
             let text = format!("`{}` stands behind `{}`, whose length varies", other.name, field.name);
             return refuse(&at, text, "a field of varying length stands last");

@@ -1,22 +1,31 @@
 //! What becomes of the frames of long messages.
 
 use canspec_codegen::interpret::{Assembled, Assembly, decode};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{ModelId, Protocol};
 
 use super::frame;
 
 /// Puts frames together. Each remembers its place. It returns the messages, and the places of frames that belong to none.
 pub fn assembled(protocol: &Protocol, frames: &[&str]) -> (Vec<Assembled<usize>>, Vec<usize>) {
+    assembled_on(protocol, None, frames)
+}
+
+/// The same for a device model.
+pub fn assembled_on(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    frames: &[&str],
+) -> (Vec<Assembled<usize>>, Vec<usize>) {
     let (mut assembly, mut ended, mut others) = (Assembly::default(), Vec::new(), Vec::new());
     for (place, frame) in frames.iter().map(|known| frame(known)).enumerate() {
-        let decoded = decode(protocol, None, &frame).unwrap_or_else(|problem| panic!("{place}: {}", problem.text));
-        let taken = assembly.take(protocol, None, place, &frame, &decoded);
+        let decoded = decode(protocol, model, &frame).unwrap_or_else(|problem| panic!("{place}: {}", problem.text));
+        let taken = assembly.take(protocol, model, place, &frame, &decoded);
         ended.extend(taken.ended);
         if !taken.is_part {
             others.push(place);
         }
     }
-    ended.extend(assembly.finish(protocol, None));
+    ended.extend(assembly.finish(protocol, model));
     (ended, others)
 }
 

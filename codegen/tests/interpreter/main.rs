@@ -6,6 +6,7 @@ mod busy;
 mod examples;
 mod isotp;
 mod j1939;
+mod long_revisions;
 mod parts;
 mod products;
 mod reading;

@@ -149,7 +149,7 @@ fn what_the_model_has_is_asked_for_though_others_have_a_shorter_frame() {
 #[test]
 fn a_frame_that_is_long_enough_for_what_the_model_does_not_have_gets_a_note() {
     let battery = written(LONGER);
-    let longer = "model_dependent: OLD has no `heating`, for which the frame is long enough";
+    let longer = "model_dependent: OLD has no `heating`, for which the message is long enough";
     assert_eq!(notes(&battery, "OLD", "005#00540000"), [longer]);
     assert_eq!(notes(&battery, "OLD", "005#00540060"), ["model_dependent: OLD has no `heating`"]);
     assert_eq!(notes(&battery, "OLD", "005#0054"), [""; 0]);

@@ -1,7 +1,7 @@
 //! Turns a decoded frame into a line of JSON.
 
 use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressType, IdentifierField, Protocol, SelectorId, Signal, SignalId, StatusBit};
+use canspec_codegen::model::{AddressType, IdentifierField, Protocol, SelectorId, Signal, StatusBit};
 
 use crate::log;
 use crate::show::fields::{Field, Read, elements, fields};
@@ -79,16 +79,6 @@ fn shown_by_identifier(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decod
     identifier(out, decoded.identifier(protocol));
 }
 
-/// Tests whether the frame is long enough for a signal that is hidden, since the device model does not have it.
-fn is_length_hidden(outcome: &Outcome<'_>, decoded: &Decoded) -> bool {
-    let (message, Some(model)) = (decoded.content(outcome.protocol), decoded.model) else { return false };
-    let is_hidden = |id: SignalId| decoded.signals.iter().all(|reading| reading.signal != id);
-    message.signals.entries().any(|(id, signal)| {
-        let is_reached = message.is_optional(signal) && usize::from(signal.end()) <= decoded.length;
-        is_reached && !signal.is_of(model) && is_hidden(id)
-    })
-}
-
 fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
     let protocol = outcome.protocol;
     let content = decoded.content(protocol);
@@ -106,7 +96,7 @@ fn recognised(out: &mut Vec<u8>, outcome: &Outcome<'_>, decoded: &Decoded) {
     });
     let of_frame = || decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     let reserved = outcome.whole.as_ref().map_or_else(of_frame, |whole| whole.reserved);
-    if reserved.iter().any(|byte| *byte != 0) || is_length_hidden(outcome, decoded) {
+    if reserved.iter().any(|byte| *byte != 0) || decoded.is_length_hidden(protocol, reserved.len()) {
         // It has as many digits as the data.
         out.extend_from_slice(b",\"reserved\":");
         name(out, &log::hexadecimal(reserved));

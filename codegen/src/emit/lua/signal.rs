@@ -96,7 +96,7 @@ fn lacking(message: &Message, signal: &Signal, known: &Lacking) -> Value {
         .with("mask", Value::unsigned_of_64_bits(known.mask))
         .with("blank", Value::unsigned_of_64_bits(known.blank))
         .maybe("whole", is_whole.then(|| Value::flag(true)))
-        .maybe("longer", (is_whole && message.is_optional(signal)).then(|| Value::flag(true)))
+        .maybe("longer", (is_whole && signal.end() > message.shortest()).then(|| Value::flag(true)))
         .maybe("values", (!known.values.is_empty()).then(|| Value::map(values)))
 }
 
