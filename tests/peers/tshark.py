@@ -322,7 +322,8 @@ def frame_of_row(row):
 
 
 def compare_sessions(bench, protocols):
-    """Compares the logs of sessions with long messages, and the same frames where some are lost and some repeated."""
+    """Compares the logs of sessions with long messages, and the same frames where some are lost and some repeated. A
+    session of device models is also compared as one of the last of them."""
     wrong = 0
     for spec in protocols:
         name = os.path.basename(spec).removesuffix(".yaml")
@@ -332,8 +333,11 @@ def compare_sessions(bench, protocols):
                 frames = [line.rstrip("\n") for line in file if "#" in line]
             chosen = random.Random(20)
             disturbed = [frame for frame in frames for _ in range(chosen.choices((0, 1, 2), (5, 90, 5))[0])]
-            for what, log in (("session", frames), ("disturbed session", disturbed)):
-                lines, _, differences, seconds = compare(bench, spec, bench.log(log))
+            model = last_model(bench, spec)
+            logs_of_models = [("session", frames, None), ("disturbed session", disturbed, None)]
+            logs_of_models += [(f"session of {model}", frames, model)] if model else []
+            for what, log, model in logs_of_models:
+                lines, _, differences, seconds = compare(bench, spec, bench.log(log), model=model)
                 wholes = sum(len(line["wholes"]) for line in lines[:-1])
                 wrong += report(name, f"{what}, {wholes} long", lines, differences, seconds)
     return wrong

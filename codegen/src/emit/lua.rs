@@ -94,7 +94,10 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
         .with("name", Value::text(&message.name))
         .maybe("models", models)
         .maybe("long", protocol.long_message(message).map(|(_, known)| long(protocol, known)))
-        .with("signals", Value::list(&message.signals, |known| signal(protocol, message, known)))
+        .with(
+            "signals",
+            Value::list(&message.signals, |known| signal(protocol, (message, message.shortest().into()), known)),
+        )
         .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
 }

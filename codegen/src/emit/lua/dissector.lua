@@ -283,7 +283,9 @@ local function show_whole(whole, model, tree)
     subtree:append_text(", " .. refused)
     readings, found = {}, {}
   end
-  for _, reading in ipairs(readings) do add_reading(subtree, tvb, reading) end
+  for _, reading in ipairs(readings) do
+    if not reading.is_hidden then add_reading(subtree, tvb, reading) end
+  end
   for _, note in ipairs(found) do subtree:add_proto_expert_info(notes[note.rule], note.text) end
   if whole.incomplete then subtree:add_proto_expert_info(incomplete, whole.incomplete) end
 end

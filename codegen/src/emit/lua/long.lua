@@ -112,6 +112,15 @@ local function reading_of(whole, signal, model)
   return found and text_reading(signal, found, model)
 end
 
+-- Tests whether a device model has a signal whose number or length varies.
+local function has_varying(long, model)
+  for _, signal in ipairs(long.signals) do
+    local is_open = signal.most and signal.least < signal.most
+    if (signal.index or is_open) and not lacks(signal, model) then return true end
+  end
+  return false
+end
+
 -- Returns what joined data say: the signals whose bytes all came, and notes.
 local function readings_of(whole, model)
   local found, notes = {}, {}
@@ -120,7 +129,7 @@ local function readings_of(whole, model)
     if known then table.insert(found, known) end
     if known and known.rule then table.insert(notes, known) end
   end
-  if not whole.is_counted then
+  if not whole.is_counted and has_varying(whole.long, model) then
     local text = "nothing says how many of the " .. whole.long.varying .. " are real"
     table.insert(notes, { rule = "count", text = text })
   end

@@ -32,7 +32,7 @@ fn varying(field: Varying) -> Value {
 
 /// Returns a signal with the first of the eight bytes in which it has its place.
 fn long_signal(protocol: &Protocol, long: &LongMessage, known: &Signal) -> Value {
-    signal(protocol, &long.content, known)
+    signal(protocol, (&long.content, long.shortest_sent()), known)
         .with("window", Value::number(known.window))
         .maybe("least", known.run.map(|run| Value::number(run.least)))
         .maybe("most", known.run.map(|run| Value::number(run.most)))

@@ -44,21 +44,22 @@ pub fn names(values: &[NamedValue], width: u8) -> Value {
     Value::map(values.iter().map(|value| (wide(value.raw, width), Value::text(&value.name))))
 }
 
-pub fn signal(protocol: &Protocol, message: &Message, signal: &Signal) -> Value {
+/// Returns a signal of a message that `shortest` data bytes can carry.
+pub fn signal(protocol: &Protocol, (message, shortest): (&Message, usize), signal: &Signal) -> Value {
     let record = Value::record()
         .with("name", Value::text(&signal.name))
         .maybe("title", signal.doc.title.as_ref().map(Value::words))
         .with("place", place(signal.place))
         .maybe("unit", signal.unit.map(|unit| Value::text(&unit.symbol)));
-    let record = limits(meaning(protocol, message, record, signal), signal);
+    let record = limits(meaning(protocol, (message, shortest), record, signal), signal);
     let rows = protocol.models.ids().filter_map(|model| protocol.lacking(message, signal, model));
-    let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(message, signal, &known))).collect();
+    let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(shortest, signal, &known))).collect();
     record.maybe("lacking", (!rows.is_empty()).then(|| Value::map(rows.into_iter())))
 }
 
 /// Adds the meaning of the bits: the function that turns them into a value, and how the value is
 /// shown.
-fn meaning(protocol: &Protocol, message: &Message, record: Value, signal: &Signal) -> Value {
+fn meaning(protocol: &Protocol, of: (&Message, usize), record: Value, signal: &Signal) -> Value {
     let made = |by, shown| record.with("kind", Value::text(by)).with("shown", Value::text(shown));
     match &signal.encoding {
         Encoding::Number { numeral, .. } if signal.encoding.is_unscaled() => {
@@ -68,7 +69,7 @@ fn meaning(protocol: &Protocol, message: &Message, record: Value, signal: &Signa
             scaled(written(made("number", DOUBLE), *numeral), *scale, *offset)
         }
         Encoding::ByModel { numeral, signals } => {
-            let on = |own: &OfModel<Signal>| (Value::id(own.model), self::signal(protocol, message, &own.value));
+            let on = |own: &OfModel<Signal>| (Value::id(own.model), self::signal(protocol, of, &own.value));
             written(made("by_model", DOUBLE), *numeral).with("on", Value::map(signals.iter().map(on)))
         }
         Encoding::Float => made("float", DOUBLE),
@@ -89,15 +90,23 @@ fn meaning(protocol: &Protocol, message: &Message, record: Value, signal: &Signa
 }
 
 /// Returns the bits that a device model does not have, what they are there, and the raw values that it does not have.
-fn lacking(message: &Message, signal: &Signal, known: &Lacking) -> Value {
+fn lacking(shortest: usize, signal: &Signal, known: &Lacking) -> Value {
     let is_whole = !signal.is_of(known.model);
     let values = known.values.iter().map(|raw| (wide(*raw, signal.place.width()), Value::flag(true)));
     Value::record()
         .with("mask", Value::unsigned_of_64_bits(known.mask))
         .with("blank", Value::unsigned_of_64_bits(known.blank))
         .maybe("whole", is_whole.then(|| Value::flag(true)))
-        .maybe("longer", (is_whole && signal.end() > message.shortest()).then(|| Value::flag(true)))
+        .maybe("longer", (is_whole && signal.reach() > shortest).then(|| longer(shortest, signal)))
         .maybe("values", (!known.values.is_empty()).then(|| Value::map(values)))
+}
+
+/// Says that only some messages have a signal, or how many bytes of a text all of them have.
+fn longer(shortest: usize, signal: &Signal) -> Value {
+    match signal.run {
+        None => Value::flag(true),
+        Some(_) => Value::Plain(shortest.saturating_sub(signal.window.into()).to_string()),
+    }
 }
 
 /// Adds which integer the bits are.

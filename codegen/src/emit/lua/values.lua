@@ -256,15 +256,22 @@ local function on_model(signal, model)
   return signal.on and signal.on[model] or signal
 end
 
--- Says that a device model does not have what bits or their raw value show, or that the frame is long enough for. It
--- also returns whether the model lacks the signal, and whether the bits are blank then.
-local function lack(signal, model, bits, raw)
+-- Tests whether a device model does not have a signal.
+local function lacks(signal, model)
+  local known = signal.lacking and signal.lacking[model]
+  return known and known.whole
+end
+
+-- Says that a device model does not have what bits or their raw value show, or that the message is long enough for. It
+-- also returns whether the model lacks the signal, and whether the bits are blank then. A text has some number of bytes.
+local function lack(signal, model, bits, raw, bytes)
   local known = signal.lacking and signal.lacking[model]
   if not known then return nil end
   local wide = type(bits) == "number" and UInt64(bits) or bits
   local is_blank = wide:bxor(known.blank):band(known.mask) == UInt64(0)
   local is_hidden = known.whole and is_blank
-  if is_blank and not known.longer and not (known.values and known.values[key(raw)]) then
+  local is_longer = known.longer and (not bytes or bytes > known.longer)
+  if is_blank and not is_longer and not (known.values and known.values[key(raw)]) then
     return nil, known.whole, is_hidden
   end
   return protocol.models[model] .. " has no such `" .. signal.name .. "`", known.whole, is_hidden
@@ -294,10 +301,12 @@ end
 -- Returns what digits say about a text that no place holds. A device model that lacks it has only blank bytes there.
 local function text_reading(signal, hex, model)
   local value, rule, text = texts[signal.kind](signal, hex)
+  local is_hidden = lacks(signal, model)
+  if is_hidden then rule, text = nil, nil end
   for pair in hex:gmatch("..") do
-    local lacked, is_whole = lack(signal, model, tonumber(pair, 16))
-    if lacked then return { signal = signal, raw = hex, value = value, rule = "model_dependent", text = lacked } end
-    if is_whole then rule, text = nil, nil end
+    local lacked, _, is_blank = lack(signal, model, tonumber(pair, 16), nil, #hex / 2)
+    if lacked then rule, text = "model_dependent", lacked end
+    is_hidden = is_hidden and is_blank
   end
-  return { signal = signal, raw = hex, value = value, rule = rule, text = text }
+  return { signal = signal, raw = hex, value = value, rule = rule, text = text, is_hidden = is_hidden }
 end
