@@ -59,8 +59,8 @@ impl Scale {
 
     /// Returns the double nearest to the physical value of `raw`.
     ///
-    /// Sum and product are exact while their size stays below 2⁵³. Then only the division rounds.
-    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    /// Sum and product are exact to 2⁵³, and with the powers of two that they share. Then only the division rounds.
+    #[expect(clippy::cast_precision_loss, reason = "the compiler accepts scales that are exact, or below 2^50")]
     #[inline(always)]
     pub const fn physical(self, raw: i64) -> f64 {
         self.sum(raw) as f64 / self.common_denominator() as f64
@@ -89,7 +89,7 @@ impl Scale {
         if width > 32 { nearest(exact) } else { Some(rounded(exact, width, signed)) }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    #[expect(clippy::cast_precision_loss, reason = "the compiler accepts scales that are exact, or below 2^50")]
     #[inline(always)]
     const fn exact(self, physical: f64) -> f64 {
         let offset = self.offset as f64 / self.common_denominator() as f64;

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 from collections import Counter
+from fractions import Fraction
 from pathlib import Path
 
 import cantools
@@ -196,6 +197,11 @@ def compare_parts(name, inside, ours, raw):
     return found
 
 
+def is_halfway(value, number):
+    """Tests whether a value lies exactly between two steps."""
+    return (Fraction(value) - Fraction(number.offset)) / Fraction(number.scale) % 1 == Fraction(1, 2)
+
+
 def set_values(protocol, frame, chance):
     """Puts other values into a frame; returns them as the DBC names them, and whether one lies between two steps."""
     message = protocol.message(frame)
@@ -227,6 +233,8 @@ def set_values(protocol, frame, chance):
                 steps = math.floor((ours["value"] - number.offset) / number.scale)
                 ours["value"] = (steps + 0.5) * number.scale + number.offset
                 halfway = True
+            # Doubles of more than 2^51 steps lie there by themselves.
+            halfway = halfway or is_halfway(ours["value"], number)
         values[name] = ours["value"]
     frame.pop("reserved", None)
     return values, halfway

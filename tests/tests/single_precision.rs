@@ -178,20 +178,17 @@ fn diagnostics(field: &str, scaled: Scaled) -> Diagnostics {
 #[test]
 fn a_spec_that_does_not_suit_single_precision_is_refused_for_it() {
     for (field, why) in [
-        ("{bytes: 0..3, scale: 1/1000}", "32 bits times 0.001 reach 2^31, and a single tells steps apart below 2^22"),
+        ("{bytes: 0..3, scale: 1/1000}", "32 bits in steps of 0.001 are too many for a single, while 22 bits fit"),
         (
             "{bytes: 0..3, scale: 1/1000, range: 0..4194.304}",
-            "raw values to 4194304 times 0.001 reach 2^22, and a single tells steps apart below 2^22",
+            "raw values from 0 to 4194304 in steps of 0.001 are too many for a single, while 22 bits fit",
         ),
         (
             "{bytes: 0..3, scale: 1/1000, range: 0..750, values: {4194304: none}}",
-            "raw values to 4194304 times 0.001 reach 2^22, and a single tells steps apart below 2^22",
+            "raw values from 0 to 4194304 in steps of 0.001 are too many for a single, while 22 bits fit",
         ),
-        ("{bytes: 0..3, scale: 1/1024}", "32 bits times 1/1024 reach 2^31, and a single tells steps apart below 2^24"),
-        (
-            "{bytes: 0, scale: 1/16777217}",
-            "the denominator of 1/16777217 reaches 2^24, beyond which a single misses integers",
-        ),
+        ("{bytes: 0..3, scale: 1/1024}", "32 bits in steps of 1/1024 are too many for a single, while 24 bits fit"),
+        ("{bytes: 0, scale: 1/16777217}", "steps of 1/16777217 from 0 on are too fine for a single"),
     ] {
         let said = said(field, Scaled::F32);
         assert!(said.ends_with(&format!("error[grid]: `temperature.level`: {why}")), "{field}: {said}");
@@ -219,6 +216,8 @@ fn a_spec_that_suits_single_precision_is_not_refused_for_it() {
         "{bytes: 0..3, scale: 1/1000, range: 0..4194.303}",
         "{bytes: 0..2, scale: 1/1024}",
         "{bytes: 0..2, scale: 1024}",
+        "{bytes: 0..3, scale: 1/1024, range: 0..16384}",
+        "{bytes: 0..3, scale: 1/1024, offset: -1024, range: 14336..15360}",
         "{bytes: 0..3, range: 0..16777217}",
         "{bytes: 0..3}",
     ] {
@@ -259,10 +258,14 @@ fn doubles_and_whole_steps_refuse_the_same_step() {
 
 #[test]
 fn a_double_holds_wide_steps_of_powers_of_two() {
-    // 16 (2^49 - 1) and (2^52 - 1) / 8 have 49 and 52 significant bits.
+    // The first one has 49 significant bits, the second one 52, and each of the others 53.
     for (scale, raw, physical) in [
         (Scale::new(16, 1), (1 << 49) - 1, 9_007_199_254_740_976.0),
         (Scale::new(1, 8), (1 << 52) - 1, 4_503_599_627_370_495.0 / 8.0),
+        (Scale::new(16, 1), (1 << 53) - 1, 144_115_188_075_855_856.0),
+        (Scale::new(1, 1024), (1 << 53) - 1, 8_796_093_022_207.999_023_437_5),
+        (Scale::new(1, 2), -(1 << 53) + 1, -4_503_599_627_370_495.5),
+        (Scale::new(-1024, 1), (1 << 53) - 1, -9_223_372_036_854_774_784.0),
     ] {
         for (raw, physical) in [(raw, physical), (raw - 1, physical - scale.physical(1))] {
             assert_eq!((scale.physical(raw), scale.raw(physical)), (physical, Some(raw)));
@@ -272,15 +275,9 @@ fn a_double_holds_wide_steps_of_powers_of_two() {
         assert_eq!(said(field, Scaled::F64), "", "{field}");
     }
     for (field, why) in [
-        (
-            "{bytes: 0..5, scale: 33/8}",
-            "48 bits in steps of 4.125 reach 2^53, and an `f64` tells steps apart below 2^53",
-        ),
-        ("{bytes: 0..5, scale: 66}", "48 bits in steps of 66 reach 2^54, and an `f64` tells steps apart below 2^54"),
-        (
-            "{bytes: 0, scale: 1/10000000000000000}",
-            "the denominator of 1/10000000000000000 reaches 2^53, beyond which an `f64` misses integers",
-        ),
+        ("{bytes: 0..5, scale: 33/8}", "48 bits in steps of 4.125 are too many for an `f64`, while 47 bits fit"),
+        ("{bytes: 0..5, scale: 66}", "48 bits in steps of 66 are too many for an `f64`, while 47 bits fit"),
+        ("{bytes: 0, scale: 1/9007199254740993}", "steps of 1/9007199254740993 from 0 on are too fine for an `f64`"),
     ] {
         let said = said(field, Scaled::F64);
         assert!(said.ends_with(why), "{field}: {said}");

@@ -1,7 +1,7 @@
 #![doc = include_str!("../../docs/rules/grid.md")]
 
 use crate::emit::Scaled;
-use crate::model::{Linear, Numeral, Protocol, Signal};
+use crate::model::{Linear, Protocol, Signal};
 use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::report::rule::rules;
 use crate::words::number::Rational;
@@ -10,25 +10,14 @@ rules! {
     GRID "grid" Check ERROR;
 }
 
-/// Sums and products of raw values must stay below this power of two. Factors of two that the scale and the offset share
-/// do not count, since they leave the digits of a float as they are.
-const DOUBLE: u32 = 50;
-
-/// Below this power of two, a double holds every integer exactly. If the common denominator is a power of two, every step
-/// is exact.
-const EXACT_DOUBLE: u32 = 53;
-
-/// Sums and products are integers of 64 bits on the way.
-const HELD: u32 = 62;
-
-/// The same as `DOUBLE` in single precision, for raw values within the documented range if there is one.
+/// In single precision, numbers on the way must stay below this power of two if the division rounds.
 ///
 /// This is measured. Among 2000 scales without offset, the first raw value that changes on the way
 /// is 4 207 191, in steps of 1/1027. With offsets, none of 440 million random cases below 2^22
 /// changes.
 const SINGLE: u32 = 22;
 
-/// The same as `EXACT_DOUBLE` in single precision. Limits with a fraction must stay below it, too, if the number is
+/// A single holds every integer to this power of two. Limits with a fraction must stay below it, too, if the number is
 /// unscaled.
 const EXACT: u32 = 24;
 
@@ -36,17 +25,13 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let help = "write the step that the document prints, or a smaller place; or leave `scale` and `offset` out, \
                 and say the step in `title`";
     each_scaled(protocol, diagnostics, help, |signal, linear| {
-        let (width, scale) = (signal.place.width(), linear.scale);
-        if scale == Rational::ZERO {
-            return Some("a scale of 0 makes every value 0".to_owned());
-        }
-        missed(beyond(width, linear.numeral), linear, DOUBLES, || format!("{width} bits in steps of {scale}"))
+        missed(width_limits(signal.place.width(), linear), linear, &DOUBLES, || bits(signal))
     });
 }
 
 /// Tests whether a double tells apart all steps of a scaled number that is `width` bits wide.
 pub fn has_exact_steps(width: u8, linear: Linear) -> bool {
-    linear.scale != Rational::ZERO && missed(beyond(width, linear.numeral), linear, DOUBLES, String::new).is_none()
+    missed(width_limits(width, linear), linear, &DOUBLES, String::new).is_none()
 }
 
 /// Looks for scales and limits that do not fit single precision, if generated code calculates in
@@ -63,42 +48,78 @@ fn missed_by_single(signal: &Signal, linear: Linear) -> Option<String> {
     if Scaled::F32.of(signal) != Scaled::F32 {
         return None;
     }
-    let (width, scale) = (signal.place.width(), linear.scale);
-    let documented = documented(signal, linear);
-    let raw = documented.map_or_else(|| format!("{width} bits"), |raw| format!("raw values to {raw}"));
-    let extreme = documented.unwrap_or_else(|| farthest(width, linear.numeral));
-    missed(extreme, linear, SINGLES, || format!("{raw} times {scale}"))
+    match documented(signal, linear) {
+        Some(ends) => missed(ends, linear, &SINGLES, || format!("raw values from {} to {}", ends[0], ends[1])),
+        None => missed(width_limits(signal.place.width(), linear), linear, &SINGLES, || bits(signal)),
+    }
 }
 
-/// What a floating-point type tells apart.
+/// A type in which numbers are calculated.
 struct Type {
     name: &'static str,
-    /// The power of two below which it tells steps apart, and that if the common denominator is a power of two.
-    powers: [u32; 2],
+    /// Tests whether it holds all numbers on a way, of which this one is the largest.
+    holds: fn(&Way, u128) -> bool,
 }
 
-const DOUBLES: Type = Type { name: "an `f64`", powers: [DOUBLE, EXACT_DOUBLE] };
-const SINGLES: Type = Type { name: "a single", powers: [SINGLE, EXACT] };
+const INTEGERS: Type = Type { name: "an `i64`", holds: |way, largest| largest.max(way.denominator) < 1 << 63 };
+const DOUBLES: Type = Type { name: "an `f64`", holds: |way, largest| way.is_exact(largest, 50, 53) };
+const SINGLES: Type = Type { name: "a single", holds: |way, largest| way.is_exact(largest, SINGLE, EXACT) };
 
-/// Says why a type misses some of the numbers that are calculated from an integer. `what` names them.
-fn missed(
-    integer: i128,
-    linear: Linear,
-    Type { name, powers: [power, exact] }: Type,
-    what: impl FnOnce() -> String,
-) -> Option<String> {
-    let Some([largest, shared, denominator]) = largest(integer, linear) else {
-        return Some(format!("{} reach 2^{HELD}, beyond which nothing calculates", what()));
-    };
-    if denominator >= 1 << exact {
-        let scale = linear.scale;
-        return Some(format!("the denominator of {scale} reaches 2^{exact}, beyond which {name} misses integers"));
+/// What an integer goes through: physical = (integer * step + start) / denominator.
+struct Way {
+    step: i128,
+    start: i128,
+    denominator: u128,
+}
+
+impl Way {
+    /// Returns the way to the values of a scale, or `None` on overflow.
+    fn new(Linear { scale, offset, .. }: Linear) -> Option<Self> {
+        let denominator = scale.common_denominator(offset)?;
+        let over = |number: Rational| number.times(Rational::integer(denominator))?.to_integer();
+        Some(Self { step: over(scale)?, start: over(offset)?, denominator: denominator.unsigned_abs() })
     }
-    let power = if denominator.is_power_of_two() { exact } else { power };
-    let is_told_apart = largest < 1 << HELD && largest / shared < 1 << power;
-    (!is_told_apart).then(|| {
-        let most = HELD.min(power + shared.ilog2());
-        format!("{} reach 2^{}, and {name} tells steps apart below 2^{most}", what(), largest.ilog2())
+
+    /// Tests whether a type holds the products and the sums of all integers between two ends.
+    fn suits(&self, ends: [i128; 2], ty: &Type) -> bool {
+        let numbers = ends.map(|integer| {
+            let product = integer.checked_mul(self.step)?;
+            Some(product.unsigned_abs().max(product.checked_add(self.start)?.unsigned_abs()))
+        });
+        let largest = numbers.into_iter().try_fold(self.start.unsigned_abs(), |most, number| Some(most.max(number?)));
+        largest.is_some_and(|largest| (ty.holds)(self, largest))
+    }
+
+    /// Tests whether a float with this many digits has each step, and leads back from it to the integer.
+    ///
+    /// Factors of two that all numbers share leave its digits as they are. A division by a power of two is exact. Any
+    /// other one rounds, and so do the steps back: their errors add up to less than half a step if three digits are
+    /// spare.
+    fn is_exact(&self, largest: u128, rounded: u32, digits: u32) -> bool {
+        let largest = largest >> (self.step | self.start).trailing_zeros();
+        match self.denominator >> self.denominator.trailing_zeros() {
+            1 => largest <= 1 << digits,
+            odd => odd < 1 << digits && largest < 1 << rounded,
+        }
+    }
+}
+
+/// Says why code that calculates in a type misses some of the integers between two ends. `what` names them.
+fn missed(ends: [i128; 2], linear: Linear, ty: &Type, what: impl FnOnce() -> String) -> Option<String> {
+    let scale = linear.scale;
+    if scale == Rational::ZERO {
+        return Some("a scale of 0 makes every value 0".to_owned());
+    }
+    let Some(way) = Way::new(linear) else {
+        return Some(format!("nothing calculates steps of {scale} from {}", linear.offset));
+    };
+    let types = [ty, &INTEGERS];
+    let ty = types.into_iter().find(|ty| !way.suits(ends, ty))?;
+    let suits = |width: &u8| types.iter().all(|ty| way.suits(width_limits(*width, linear), ty));
+    let widths = (1..=64).rev().filter(|width| linear.numeral.is_raw() || width % 4 == 0);
+    Some(match { widths }.find(suits) {
+        Some(width) => format!("{} in steps of {scale} are too many for {}, while {width} bits fit", what(), ty.name),
+        None => format!("steps of {scale} from {} on are too fine for {}", linear.offset, ty.name),
     })
 }
 
@@ -146,37 +167,22 @@ fn is_below(number: Option<i128>, power: u32) -> bool {
     number.is_some_and(|number| number.unsigned_abs() < 1 << power)
 }
 
-/// Returns one more than the largest integer that the bits can hold.
-fn beyond(width: u8, numeral: Numeral) -> i128 {
-    numeral.limits(width).1 + 1
+/// Returns the least and the greatest integer that the bits can hold.
+fn width_limits(width: u8, linear: Linear) -> [i128; 2] {
+    linear.numeral.limits(width).into()
 }
 
-/// Returns the largest |integer| that the bits can hold.
-fn farthest(width: u8, numeral: Numeral) -> i128 {
-    let (first, last) = numeral.limits(width);
-    last.max(-first)
+fn bits(signal: &Signal) -> String {
+    format!("{} bits", signal.place.width())
 }
 
-/// Returns the largest |integer| of the documented range, if there is one.
-fn documented(signal: &Signal, linear: Linear) -> Option<i128> {
+/// Returns the least and the greatest integer of the documented range, if there is one.
+fn documented(signal: &Signal, linear: Linear) -> Option<[i128; 2]> {
     signal.range?;
-    let integer = |end: Rational| {
-        let integer = end.minus(linear.offset)?.over(linear.scale)?;
-        (integer.numerator() / integer.denominator()).checked_abs()
-    };
-    let ends = signal.ranges().flat_map(|(range, _)| [range.minimum, range.maximum]).map(integer);
+    let ranges: Option<Vec<_>> = signal.ranges().map(|(range, _)| linear.integers(range)).collect();
     let specials = signal.specials.iter().map(|special| special.raw).chain(signal.default);
     let specials = specials.chain(signal.model_defaults.iter().map(|own| own.value));
     let specials = specials.filter_map(|raw| linear.numeral.integer(raw));
-    ends.chain(specials.map(i128::checked_abs)).try_fold(0, |largest: i128, integer| Some(integer?.max(largest)))
-}
-
-/// Returns the largest |integer * a + b| where physical = (integer * a + b) / c, the greatest power of two that divides a
-/// and b, and c. It is `None` on overflow.
-fn largest(integer: i128, Linear { scale, offset, .. }: Linear) -> Option<[u128; 3]> {
-    let denominator = scale.common_denominator(offset)?;
-    let over = |number: Rational| number.times(Rational::integer(denominator))?.to_integer()?.checked_abs();
-    let (step, start) = (over(scale)?, over(offset)?);
-    let largest = integer.checked_mul(step)?.checked_add(start)?;
-    Some([largest.unsigned_abs(), 1 << (step | start).trailing_zeros().min(HELD), denominator.unsigned_abs()])
+    let all: Vec<_> = ranges?.into_iter().flatten().chain(specials).collect();
+    Some([*all.iter().min()?, *all.iter().max()?])
 }

@@ -125,3 +125,45 @@ fn a_note_names_the_element_of_an_array_whose_scale_depends_on_the_model() {
     let places = on_model.signals.iter().map(|signal| (signal.name.as_str(), signal.bytes()));
     assert_eq!(places.collect::<Vec<_>>(), [("phase_1", 0..1), ("phase_2", 1..2)]);
 }
+
+/// Steps of a power of two, counted by as many bits as a double has digits.
+const WIDE: &str = r#"
+canspec: 1
+protocol: meter
+title: A meter
+document: {title: Made up, version: "1"}
+length: 8
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+addressing: {meter: {request: {sender: 0}, one: {sender: 1}}}
+access: {read: {request: {}, reply: {}, in: [reply], answers: {meter: one}}}
+messages:
+  sixteens: {section: "1", match: {command: 1}, access: [read], fields: {word: {bytes: 0..7, fields: {level: {bits: 52..0, scale: 16, title: Level}}}}}
+  fine:     {section: "1", match: {command: 2}, access: [read], fields: {word: {bytes: 0..7, fields: {level: {bits: 52..0, scale: 1/1024, title: Level}}}}}
+  halves:   {section: "1", match: {command: 3}, access: [read], fields: {word: {bytes: 0..7, fields: {level: {bits: 53..0, as: signed, scale: 1/2, offset: 1/2, title: Level}}}}}
+  falling:  {section: "1", match: {command: 4}, access: [read], fields: {word: {bytes: 0..7, fields: {level: {bits: 52..0, scale: -1024, title: Level}}}}}
+  tenths:   {section: "1", match: {command: 5}, access: [read], fields: {word: {bytes: 0..7, fields: {level: {bits: 49..0, scale: 1/10, title: Level}}}}}
+"#;
+
+/// The values are those of Python's fractions, of which each but the tenths is a double.
+#[test]
+fn steps_of_a_power_of_two_are_exact_to_53_bits_and_come_back() {
+    let meter = written(WIDE);
+    for (text, value) in [
+        ("003#001FFFFFFFFFFFFF", 144_115_188_075_855_856.0),
+        ("003#0010000000000001", 72_057_594_037_927_952.0),
+        ("005#001FFFFFFFFFFFFF", 8_796_093_022_207.999_023_437_5),
+        ("005#0010000000000001", 4_398_046_511_104.000_976_562_5),
+        ("007#001FFFFFFFFFFFFF", 4_503_599_627_370_496.0),
+        ("007#0020000000000000", -4_503_599_627_370_495.5),
+        ("009#001FFFFFFFFFFFFF", -9_223_372_036_854_774_784.0),
+        ("00B#0003FFFFFFFFFFFF", 112_589_990_684_262.3),
+        ("00B#0003FFFFFFFFFFFE", 112_589_990_684_262.2),
+    ] {
+        let decoded = decode(&meter, None, &frame(text)).expect("a reply");
+        assert_eq!(decoded.signals[0].value, Value::Number(value), "{text}");
+        assert_eq!(
+            encode(&meter, None, &Content::of(&meter, &decoded)).map(|frame| printed(&frame)).as_deref(),
+            Ok(text)
+        );
+    }
+}
