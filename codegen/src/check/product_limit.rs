@@ -1,6 +1,6 @@
 #![doc = include_str!("../../docs/rules/product_limit.md")]
 
-use crate::model::{Fixed, Limit, Message, ModelId, Protocol, QuantityPaths, Range, Signal};
+use crate::model::{Fixed, Limit, Message, ModelId, OfModel, Protocol, QuantityPaths, Range, Signal};
 use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::resolve::rules::PRODUCT_LIMIT;
 
@@ -27,6 +27,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         problems.for_each(|problem| diagnostics.push(problem));
     }
     unreached(protocol, diagnostics);
+    of_one_model(protocol, diagnostics);
 }
 
 fn documented<'a>(protocol: &'a Protocol, known: &'a QuantityPaths) -> Vec<Documented<'a>> {
@@ -93,6 +94,39 @@ fn beyond_fixed(signal: &Signal, fixed: &Fixed) -> Option<Diagnostic> {
     Some(problem.other(limit.path.at_value(), "the limit").help("write a value within the limit"))
 }
 
+/// Warns of a model's range that a spec narrows, though a request that names no model does not keep to it.
+fn of_one_model(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        let content = protocol.whole(message);
+        let open =
+            content.signals.entries().filter(|(id, signal)| signal.limit.is_none() && protocol.is_sent(message, *id));
+        for (_, signal) in open {
+            let Some(hull) = signal.hull(protocol.models_of(message)) else { continue };
+            let narrowed = signal.model_ranges.iter().filter(|own| own.value != hull);
+            let own: Vec<_> = narrowed.filter(|own| is_own(protocol, diagnostics, own)).collect();
+            for own in own {
+                diagnostics.push_first(passed(protocol, signal, own, hull));
+            }
+        }
+    }
+}
+
+/// Tests whether a spec narrows a model that it takes over, and states no section for it.
+fn is_own(protocol: &Protocol, diagnostics: &Diagnostics, own: &OfModel<Range>) -> bool {
+    let section = protocol[own.model].doc.path.key("section").at_value();
+    diagnostics.is_taken_over(&section) && !diagnostics.is_taken_over(&own.path.at_value())
+}
+
+fn passed(protocol: &Protocol, signal: &Signal, own: &OfModel<Range>, hull: Range) -> Diagnostic {
+    let (range, unit, model) = (shown(own.value), signal.unit_text(), &protocol[own.model].name);
+    let text =
+        format!("`{model}` has {range}{unit} here, but a request that names no model takes {}{unit}", shown(hull));
+    let name = set_by(protocol, signal).map_or("QUANTITY", |known| &known.name);
+    let limit = format!("`product: {{limits: {{{name}: {range}{unit}}}}}`");
+    let help = format!("to limit the product, write {limit}, which narrows every model; or `allow` the warning");
+    Diagnostic::warning(&PRODUCT_LIMIT, own.path.at_value(), text).help(help)
+}
+
 /// Warns of signals that a request sets, and that no limit reaches though it limits others in the same unit.
 fn unreached(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -114,15 +148,19 @@ fn unreached(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 fn open_path(protocol: &Protocol, message: &Message, signal: &Signal, limit: &Limit) -> Diagnostic {
     let field = format!("{}.{}", message.name, message.field_name(signal));
-    let is_set_by =
-        |known: &&QuantityPaths| protocol.setters(known).any(|(_, other)| other.doc.path == signal.doc.path);
-    let help = match protocol.quantities.iter().find(is_set_by) {
+    let help = match set_by(protocol, signal) {
         Some(known) => format!("it sets `{0}`: add a limit of `{0}`, or `allow` the warning", known.name),
         None => format!("add `{field}` to `also` of the quantity that it sets, or `allow` the warning"),
     };
     let text = format!("no limit of the product reaches `{field}`, which a request sets");
     let warning = Diagnostic::warning(&PRODUCT_LIMIT, signal.doc.path.at_key(), text).help(help);
     warning.other(limit.path.at_value(), format!("`{}` has one", limit.quantity))
+}
+
+/// Returns the quantity that a signal sets.
+fn set_by<'a>(protocol: &'a Protocol, signal: &Signal) -> Option<&'a QuantityPaths> {
+    let is_this = |(_, other): (&Message, &Signal)| other.doc.path == signal.doc.path;
+    protocol.quantities.iter().find(|known| protocol.setters(known).any(is_this))
 }
 
 fn shown(range: Range) -> String {

@@ -17,7 +17,7 @@ impl Resolver<'_> {
             let path = path.key("limits").key(name);
             let names = quantities.iter().map(|known| known.name.as_str());
             let Some(index) = self.lookup_key(&path, "quantity", name, names) else { continue };
-            let Some(limit) = self.limit(&path, text, &quantities[index], messages) else { continue };
+            let Some(limit) = self.limit(&path, text, &quantities[index], quantities, messages) else { continue };
             self.narrow(&limit, &quantities[index], messages);
             limits.push(limit);
         }
@@ -29,16 +29,19 @@ impl Resolver<'_> {
         path: &Path,
         text: &str,
         known: &QuantityPaths,
+        quantities: &[QuantityPaths],
         messages: &Table<MessageId, Message>,
     ) -> Option<Limit> {
         if self.diagnostics.has_errors_in(&known.path) {
             return None;
         }
-        let is_switch = known.set.as_ref().is_some_and(|set| set.states.is_some());
-        let Some((message, field, _)) = known.fields(|id| &messages[id]).next().filter(|_| !is_switch) else {
-            let why = if is_switch { "is a switch" } else { "is set by no request" };
+        let Some((message, field)) = setter(known, messages) else {
+            let why = if is_switch(known) { "is a switch" } else { "is set by no request" };
             let text = format!("`{}` {why}, so it has no limit", known.name);
-            let help = "limit a number that a request sets, or take it out";
+            let others = quantities.iter().filter(|known| setter(known, messages).is_some());
+            let others: Vec<_> = others.map(|known| format!("`{}`", known.name)).collect();
+            let others = if others.is_empty() { String::new() } else { format!(" ({})", others.join(", ")) };
+            let help = format!("limit a number that a request sets{others}, or take it out");
             self.error_with_help(&rules::PRODUCT_LIMIT, path.at_key(), text, help);
             return None;
         };
@@ -68,6 +71,16 @@ impl Resolver<'_> {
             contents.for_each(|content| narrow(content, &field, limit));
         }
     }
+}
+
+/// Returns a field of a request that sets a number.
+fn setter<'a>(known: &'a QuantityPaths, messages: &'a Table<MessageId, Message>) -> Option<(MessageId, &'a str)> {
+    let (message, field, _) = known.fields(|id| &messages[id]).next().filter(|_| !is_switch(known))?;
+    Some((message, field))
+}
+
+fn is_switch(known: &QuantityPaths) -> bool {
+    known.set.as_ref().is_some_and(|set| set.states.is_some())
 }
 
 fn narrow(content: &mut Message, field: &str, limit: &Limit) {
