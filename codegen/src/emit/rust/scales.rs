@@ -1,5 +1,6 @@
 //! Methods that read and set a number whose scale depends on the device model.
 
+use indexmap::IndexMap;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
@@ -20,15 +21,12 @@ pub fn on_model(signal: &Signal, any: &TokenStream) -> Option<TokenStream> {
         quote!(#any.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*)
     };
     // Models with the same signal share an arm.
-    let mut groups: Vec<(Vec<&Ident>, TokenStream)> = Vec::new();
+    let mut groups: IndexMap<String, (Vec<&Ident>, TokenStream)> = IndexMap::new();
     for row in rows {
         let scaled = scaled(row);
-        match groups.iter_mut().find(|(_, known)| known.to_string() == scaled.to_string()) {
-            Some((models, _)) => models.push(&row.model),
-            None => groups.push((vec![&row.model], scaled)),
-        }
+        groups.entry(scaled.to_string()).or_insert_with(|| (Vec::new(), scaled)).0.push(&row.model);
     }
-    let arms = groups.iter().map(|(models, scaled)| {
+    let arms = groups.values().map(|(models, scaled)| {
         quote! {
             #(Model::#models)|* => {
                 const SIGNAL: Signal<#raw, #kind> = #scaled;
