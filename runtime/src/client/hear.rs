@@ -30,12 +30,15 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             }
             self.groups.heard(node, received_at);
         }
-        if let Some(asked) = node.map(Asked::One) {
-            let entries = self.entries.iter_mut().flatten().filter(|entry| entry.asked == asked);
-            entries.for_each(|entry| entry.has_heard(received_at, answered));
-        }
-        if let Some(Answered { begun, ended: Some(first) }) = answered {
-            self.entries.iter_mut().flatten().for_each(|entry| entry.led_by(first, Some(begun)));
+        let asked = node.map(Asked::One);
+        let first = answered.and_then(|answered| Some((answered.ended?, answered.begun)));
+        for entry in self.entries.iter_mut().flatten() {
+            if asked == Some(entry.asked) {
+                entry.has_heard(received_at, answered);
+            }
+            if let Some((first, begun)) = first {
+                entry.led_by(first, Some(begun));
+            }
         }
         heard
     }
@@ -85,8 +88,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
                 continue;
             }
             let claim = entry.claim(received_at).filter(|claim| first.is_none_or(|(first, _)| *claim < first));
-            if let Some(claim) = claim.filter(|_| self.groups.is_answer(entry, frame)) {
-                first = Some((claim, place));
+            match claim.filter(|_| self.groups.is_answer(entry, frame)) {
+                // Nothing is surer.
+                Some(0) => return Some(place),
+                Some(claim) => first = Some((claim, place)),
+                None => {}
             }
         }
         first.map(|(_, place)| place)
