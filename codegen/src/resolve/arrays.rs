@@ -14,6 +14,7 @@ use crate::read::syntax::ast::Key;
 use crate::report::diagnostic::Diagnostic;
 use crate::report::tree::Path;
 use crate::resolve::rules;
+use crate::words::number::Rational;
 use crate::words::text::Text;
 
 /// Most elements of an array in a frame. A status word has room for more bits.
@@ -129,16 +130,30 @@ impl Resolver<'_> {
 
     /// Reads how many elements there are. In a long message it can be a range.
     fn count(&mut self, path: &Path, text: &str, is_long: bool) -> Option<(Option<u16>, u16)> {
-        if let Some((least, most)) = text.split_once("..").filter(|_| is_long) {
-            let most = self.integer(path, most, 2, MOST_LONG_ELEMENTS)?;
-            return Some((Some(self.integer(path, least, 1, most - 1)?), most));
+        match text.split_once("..") {
+            Some(ends) if is_long => self.counts(path, text, ends).map(|(least, most)| (Some(least), most)),
+            Some(numbers) => {
+                self.refuse_numbers(path, text, numbers);
+                None
+            }
+            None => {
+                let most = if is_long { MOST_LONG_ELEMENTS } else { MOST_ELEMENTS };
+                Some((None, self.integer(path, text, 2, most)?))
+            }
         }
-        if let Some(numbers) = text.split_once("..") {
-            self.refuse_numbers(path, text, numbers);
-            return None;
+    }
+
+    /// Reads the least and the greatest number of elements.
+    fn counts(&mut self, path: &Path, text: &str, (least, most): (&str, &str)) -> Option<(u16, u16)> {
+        let [least, most] = [least, most].map(|end| u16::try_from(Rational::parse(end)?.to_integer()?).ok());
+        let known = least.zip(most).filter(|(least, most)| (1..*most).contains(least) && *most <= MOST_LONG_ELEMENTS);
+        if known.is_none() {
+            let message = format!("`{text}` is no range of how many elements there are");
+            let help =
+                format!("write the least number, from 1, and a greater one up to {MOST_LONG_ELEMENTS}, as in `1..48`");
+            self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
         }
-        let most = if is_long { MOST_LONG_ELEMENTS } else { MOST_ELEMENTS };
-        Some((None, self.integer(path, text, 2, most)?))
+        known
     }
 
     /// Refuses the numbers of the elements in place of how many there are.
@@ -146,10 +161,12 @@ impl Resolver<'_> {
         let [first, last] = [first, last].map(|end| end.trim().parse::<u16>().ok());
         let of_numbers =
             first.zip(last).and_then(|(first, last)| Some((first, last.checked_sub(first)?.checked_add(1)?)));
+        let how_many = format!("write how many elements there are, from 2 to {MOST_ELEMENTS}");
         let help = match of_numbers {
+            Some((_, count)) if !(2..=MOST_ELEMENTS).contains(&count) => how_many,
             Some((1, count)) => format!("write `repeat: {count}`"),
             Some((first, count)) => format!("for elements with these numbers, write `repeat: {count}, first: {first}`"),
-            None => "write how many elements there are".to_owned(),
+            None => how_many,
         };
         let message =
             format!("`{text}` is a range, and only a message longer than a frame has arrays of several lengths");
