@@ -107,6 +107,8 @@ mod tests {
         let of = |signals: &str, rest: &str| format!("BO_ 1 Long_Name: 8 x\n{signals}BO_ 2 b: 8 x\n{rest}");
         let plain = " SG_ Speed : 0|16@1+ (1,0) [0|0] \"rpm\" y\n";
         let limited = " SG_ Speed : 0|16@1+ (0.5,0) [0|100] \"\" y\n SG_ Other : 16|16@1+ (1,0) [0|10] \"V\" y\n";
+        let between =
+            " SG_ Speed : 0|16@1+ (0.5,0) [0.25|100.3] \"\" y\n SG_ Other : 16|16@1- (1,-40) [-39.9|200.5] \"V\" y\n";
         let cycle = "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 1000;\nBA_ \"GenMsgCycleTime\" BO_ 1 100;\n";
         let special = "VAL_ 1 Speed 65535 \"broken\" ;\n";
         let more = "BO_ 3 c: 8 x\nBO_ 4 d: 8 x\nBO_ 5 Eee_F: 8 x\n";
@@ -115,6 +117,7 @@ mod tests {
             of("", ""),
             of(plain, ""),
             of(limited, ""),
+            of(between, ""),
             of(" SG_ Speed : 0|16@1+ (1,0) [0|100] \"rpm\" y\n", special),
             of(limited, &[more, cycle].concat()),
         ];
@@ -122,6 +125,39 @@ mod tests {
             let spec = imported(text.clone().into_bytes()).expect("the DBC is right");
             let source = Source::new("a.yaml", spec.clone().into_bytes()).expect("the spec is text");
             assert_eq!(compile(source).diagnostics.concise(), "", "{text}\n{spec}");
+        }
+    }
+    #[test]
+    fn limits_between_steps_are_narrowed_to_the_steps_inside_them() {
+        let field = |number: &str| {
+            let text = format!("BO_ 1 m: 8 x\n SG_ s : 0|8@1+ {number} \"V\" y\n");
+            let spec = imported(text.into_bytes()).expect("the DBC is right");
+            spec.lines().find_map(|line| line.strip_prefix("      s: {bytes: 0, ")).map(str::to_owned)
+        };
+        for (number, expected) in [
+            (
+                "(0.5,0) [0.25|100.3]",
+                "scale: 0.5, unit: V, range: 0.5..100}  # DECIDE: the limits 0.25..100.3 of the DBC, which lie between steps",
+            ),
+            (
+                "(1,-40) [-39.9|200]",
+                "offset: -40, unit: V, range: -39..200}  # DECIDE: the limits -39.9..200 of the DBC, which lie between steps",
+            ),
+            (
+                "(-0.5,10) [-1.3|9.9]",
+                "scale: -0.5, offset: 10, unit: V, range: -1..9.5}  # DECIDE: the limits -1.3..9.9 of the DBC, which lie between steps",
+            ),
+            (
+                "(0.3,0) [0.31|0.32]",
+                "scale: 0.3, unit: V}  # DECIDE: the limits 0.31..0.32 of the DBC, between which there is no step",
+            ),
+            ("(0.5,0) [0.5|100]", "scale: 0.5, unit: V, range: 0.5..100}"),
+            (
+                "(0.5,0) [1|1.2]",
+                "scale: 0.5, unit: V, range: 1..1}  # DECIDE: the limits 1..1.2 of the DBC, which lie between steps",
+            ),
+        ] {
+            assert_eq!(field(number).as_deref(), Some(expected), "{number}");
         }
     }
 }

@@ -80,6 +80,7 @@ fn number(signal: &Signal, named: &[Named]) -> Result<Translated, String> {
     let held = linear.value(first).zip(linear.value(last)).map(|(one, other)| (one.min(other), one.max(other)));
     let stated = stated(signal, &mut meaning);
     let range = stated.zip(held).and_then(|(range, held)| within(range, held, &mut meaning));
+    let range = range.and_then(|range| on_steps(range, linear, &mut meaning));
     let range = beside(range, &named, |raw| linear.value(raw.into()), &mut meaning);
     meaning.is_named = !named.is_empty() && !signed && !is_scaled && range.is_none() && unit_of(signal).is_none();
     meaning.keys.extend(signed.then(|| ("as", "signed".to_owned())));
@@ -122,6 +123,24 @@ fn within(range: Range, held: Range, meaning: &mut Translated) -> Option<Range> 
         return None;
     }
     (cut != held).then_some(cut)
+}
+
+/// Narrows limits to the steps inside them, which are all that can be sent.
+fn on_steps(range: Range, linear: Linear, meaning: &mut Translated) -> Option<Range> {
+    let raw = |end: Rational| end.minus(linear.offset)?.over(linear.scale);
+    let Some((one, other)) = raw(range.0).zip(raw(range.1)) else { return Some(range) };
+    let (first, last) = (one.min(other).ceiling(), one.max(other).floor());
+    let stated = format!("the limits {}..{} of the DBC", range.0, range.1);
+    if first > last {
+        meaning.decide.push(format!("{stated}, between which there is no step"));
+        return None;
+    }
+    let Some((one, other)) = linear.value(first).zip(linear.value(last)) else { return Some(range) };
+    let steps = (one.min(other), one.max(other));
+    if steps != range {
+        meaning.decide.push(format!("{stated}, which lie between steps"));
+    }
+    Some(steps)
 }
 
 /// Drops limits that contain named values, because these would have two meanings.
