@@ -61,9 +61,36 @@ fn protocols_that_fit_equally_well_are_told_apart_by_what_they_read() {
     };
     let shared = "0283F000#43FA000040600000";
     let equal = said(&[shared, shared]);
-    assert!(equal.contains("infy reads the same messages and values as gcp in this log"), "{equal}");
+    assert!(equal.contains("infy reads the same messages, values and addresses as gcp in this log"), "{equal}");
     // PHOENIX CONTACT's document has an interval beside the switch for walk-in mode, INFY's has none.
     let different = said(&[shared, "029300F0#0000000000000000", shared, "02933FF0#0100000000000000"]);
-    assert!(different.contains("infy reads 2 frames unlike gcp, the first in line 2"), "{different}");
+    assert!(
+        different.contains("infy reads 2 frames unlike gcp, the first in line 2, with other values"),
+        "{different}"
+    );
     assert!(!different.contains("same messages"), "{different}");
+}
+
+#[test]
+fn protocols_that_differ_in_addresses_alone_are_told_apart_by_them() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    // The second one counts its shelves from 0.
+    for (name, offset) in [("shelf", 0), ("rack", -1)] {
+        let spec = format!(
+            "canspec: 1\nprotocol: {name}\ntitle: Modules\ndocument: {{title: Made up, version: \"1\"}}\nlength: 2\n\
+             identifier: {{to_host: {{bits: 10}}, place: {{bits: 9..0}}}}\n\
+             types: {{{name}: {{range: {}..9, offset: {offset}}}}}\n\
+             addressing: {{single: {{request: {{to_host: 0, place: {name}}}, one: {{to_host: 1, place: {name}}}}}}}\n\
+             access: {{read: {{request: {{}}, reply: {{}}, in: [reply], answers: {{single: one}}}}}}\n\
+             messages: {{heat: {{section: \"2\", access: [read], fields: {{heat: {{bytes: 0..1, unit: V}}}}}}}}\n",
+            1 + offset
+        );
+        fs::write(folder.path().join(format!("{name}.yaml")), spec).expect("the folder can be written");
+    }
+    fs::write(folder.path().join("bus.log"), "402#0019\n403#0019\n").expect("the folder can be written");
+    let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    let call = ["identify", "--spec", "shelf.yaml", "--spec", "rack.yaml", "bus.log"];
+    let output = canspec.args(call).current_dir(folder.path()).output().expect("it starts");
+    let text = String::from_utf8(output.stdout).expect("it is text");
+    assert!(text.contains("rack reads 2 frames unlike shelf, the first in line 1, with other addresses"), "{text}");
 }

@@ -70,16 +70,50 @@ struct Candidate {
 #[derive(Clone, Copy, Default)]
 struct Unlike {
     count: u64,
-    /// The line of the first one.
-    line: usize,
+    /// The line of the first one, and what differs there.
+    first: (usize, &'static str),
 }
 
 impl Unlike {
-    fn add(&mut self, line: usize) {
+    fn add(&mut self, line: usize, what: &'static str) {
         self.count += 1;
         if self.count == 1 {
-            self.line = line;
+            self.first = (line, what);
         }
+    }
+}
+
+/// What a protocol says of a frame.
+struct Reading {
+    message: String,
+    values: String,
+    /// Their numbers, since each document has its own words for them.
+    addresses: Vec<i64>,
+}
+
+impl Reading {
+    fn of(protocol: &Protocol, decoded: &Decoded, id: u32) -> Self {
+        Self {
+            message: format!("{} {}", decoded.content(protocol).name, decoded.kind.name()),
+            values: values(protocol, decoded),
+            addresses: decoded.addresses(protocol, id).map(|(_, number)| number).collect(),
+        }
+    }
+}
+
+/// Says in what two readings of a frame differ.
+fn difference(own: Option<&Reading>, other: Option<&Reading>) -> Option<&'static str> {
+    match (own, other) {
+        (None, None) => None,
+        (Some(_), None) => Some("which the other does not know"),
+        (None, Some(_)) => Some("which it does not know"),
+        (Some(own), Some(other)) => [
+            (own.message != other.message, "as another message"),
+            (own.values != other.values, "with other values"),
+            (own.addresses != other.addresses, "with other addresses"),
+        ]
+        .into_iter()
+        .find_map(|(differs, what)| differs.then_some(what)),
     }
 }
 
@@ -149,8 +183,11 @@ fn try_all(candidates: &mut [Candidate], frame: &Frame, line: usize) {
         candidates.iter_mut().zip(&readings).for_each(|(known, own)| known.alone += u64::from(own.is_some()));
     }
     for (candidate, own) in candidates.iter_mut().zip(&readings) {
-        let others = candidate.unlike.iter_mut().zip(&readings).filter(|(_, other)| *other != own);
-        others.for_each(|(unlike, _)| unlike.add(line));
+        for (unlike, other) in candidate.unlike.iter_mut().zip(&readings) {
+            if let Some(what) = difference(own.as_ref(), other.as_ref()) {
+                unlike.add(line, what);
+            }
+        }
     }
 }
 
@@ -165,17 +202,17 @@ fn write_equals(out: &mut impl Write, candidates: &[Candidate]) -> io::Result<()
     writeln!(out, "\n{} fit equally well; TITLE says what their devices are", names.join(", "))?;
     others.iter().try_for_each(|other| match other.unlike[first.place] {
         Unlike { count: 0, .. } => {
-            writeln!(out, "{} reads the same messages and values as {} in this log", other.name, first.name)
+            writeln!(out, "{} reads the same messages, values and addresses as {} in this log", other.name, first.name)
         }
-        Unlike { count, line } => {
+        Unlike { count, first: (line, what) } => {
             let frames = if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") };
-            writeln!(out, "{} reads {frames} unlike {}, the first in line {line}", other.name, first.name)
+            writeln!(out, "{} reads {frames} unlike {}, the first in line {line}, {what}", other.name, first.name)
         }
     })
 }
 
-/// Returns the message of a frame and its values as a text.
-fn reading(protocol: &Protocol, decoded: &Decoded) -> String {
+/// Returns the values of a frame as a text.
+fn values(protocol: &Protocol, decoded: &Decoded) -> String {
     let content = decoded.content(protocol);
     let values = decoded.signals.iter().map(|read| {
         let signal = &content[read.signal];
@@ -189,7 +226,7 @@ fn reading(protocol: &Protocol, decoded: &Decoded) -> String {
         };
         format!("{} {value} {unit}", signal.name)
     });
-    [format!("{} {}", content.name, decoded.kind.name())].into_iter().chain(values).collect::<Vec<_>>().join("\n")
+    values.collect::<Vec<_>>().join("\n")
 }
 
 impl Candidate {
@@ -199,11 +236,11 @@ impl Candidate {
     }
 
     /// Counts a frame, and returns what it says if the protocol recognises it.
-    fn try_on(&mut self, frame: &Frame) -> Option<String> {
+    fn try_on(&mut self, frame: &Frame) -> Option<Reading> {
         let decoded = decode(&self.protocol, None, frame).ok()?;
         self.recognised += 1;
         self.contradicted += u64::from(decoded.notes.iter().any(|note| contradicts(note.rule)));
-        Some(reading(&self.protocol, &decoded))
+        Some(Reading::of(&self.protocol, &decoded, frame.id))
     }
 
     /// Returns the frames without a contradiction, then all that are recognised.
