@@ -177,6 +177,8 @@ fn a_file_without_lines_is_refused_once_with_what_makes_lines_of_it() {
                 assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{name}: {said}");
                 assert!(said.contains("bus: the file is ") && said.contains(name) && said.contains(program), "{said}");
                 assert!(output.stdout.is_empty(), "{name}");
+                // What is said holds for each command.
+                assert!(!said.contains("canspec decode --protocol"), "{said}");
             }
         }
     }

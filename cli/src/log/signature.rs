@@ -12,27 +12,27 @@ const KINDS: &[Kind] = &[
     Kind {
         begins: &[b"\x1F\x8B"],
         name: "is compressed by gzip",
-        help: "write `zcat FILE.gz | canspec decode --protocol NAME -`",
+        help: "write `zcat FILE.gz |` before this call, and `-` in place of the file",
     },
     Kind {
         begins: &[b"\x28\xB5\x2F\xFD"],
         name: "is compressed by zstd",
-        help: "write `zstdcat FILE.zst | canspec decode --protocol NAME -`",
+        help: "write `zstdcat FILE.zst |` before this call, and `-` in place of the file",
     },
     Kind {
         begins: &[b"\xFD7zXZ\0"],
         name: "is compressed by xz",
-        help: "write `xzcat FILE.xz | canspec decode --protocol NAME -`",
+        help: "write `xzcat FILE.xz |` before this call, and `-` in place of the file",
     },
     Kind {
         begins: &[b"BZh"],
         name: "is compressed by bzip2",
-        help: "write `bzcat FILE.bz2 | canspec decode --protocol NAME -`",
+        help: "write `bzcat FILE.bz2 |` before this call, and `-` in place of the file",
     },
     Kind {
         begins: &[b"PK\x03\x04"],
         name: "is a ZIP archive",
-        help: "write `unzip -p FILE.zip | canspec decode --protocol NAME -`",
+        help: "write `unzip -p FILE.zip |` before this call, and `-` in place of the file",
     },
     Kind {
         begins: &[b"LOGG"],
