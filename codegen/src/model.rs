@@ -37,7 +37,7 @@ pub mod unit_prefixes;
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
 pub use array::{Array, Element};
-pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, TypeOfModel};
+pub use data::{Allowance, DeviceModel, Doc, Document, Erratum, NamedType, Procedure, Sides, TypeOfModel};
 pub use derivation::{Derivation, Descent};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
@@ -51,7 +51,9 @@ pub use lacking::{Lacking, only};
 pub use long::{Announcement, Carrier, LongMessage, Parts, Varying};
 pub(crate) use message::first_bytes;
 pub(crate) use message::submasks;
-pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
+pub use message::{
+    Access, Answers, Constant, Exchange, FixedField, FrameLayout, Kind, Message, Reserved, Side, Travel, Who,
+};
 pub use note::NoteRule;
 pub use numeral::Numeral;
 pub use place::WrittenPlace;
@@ -136,12 +138,14 @@ pub struct Protocol {
     pub value_examples: Vec<ValueExample>,
     /// What the spec says beside the sequences of examples.
     pub sequences: Vec<Doc>,
-    /// What the spec says beside the types.
-    pub types: Vec<Doc>,
+    /// The types that the spec defines.
+    pub types: Vec<NamedType>,
     /// Remarks of words. Words are no signals themselves.
     pub words: Vec<Doc>,
     /// Departures from the document.
     pub errata: Vec<Erratum>,
+    /// Warnings that the spec accepts.
+    pub allowances: Vec<Allowance>,
 }
 
 impl Protocol {
@@ -213,6 +217,7 @@ impl Protocol {
         docs.extend(self.foreign.iter().map(|foreign| &foreign.doc));
         docs.extend(self.transports.iter().map(|transport| &transport.doc));
         docs.extend(self.messages.iter().map(|message| &message.doc));
+        docs.extend(self.messages.iter().flat_map(|message| &message.fixed).map(|field| &field.doc));
         docs.extend(self.contents().flat_map(|message| &message.signals).flat_map(Signal::docs));
         docs.extend(self.models.iter().map(|model| &model.doc));
         docs.extend(self.models.iter().flat_map(|model| &model.types).map(|known| &known.doc));
@@ -220,7 +225,7 @@ impl Protocol {
         docs.extend(self.after_silence.iter().map(|silence| &silence.doc));
         docs.extend(self.procedures.iter().map(|procedure| &procedure.doc));
         docs.extend(self.sequences.iter());
-        docs.extend(self.types.iter());
+        docs.extend(self.types.iter().map(|known| &known.doc));
         docs.extend(self.words.iter());
         docs.extend(self.examples.iter().map(|example| &example.doc));
         docs.extend(self.long_examples.iter().map(|example| &example.doc));

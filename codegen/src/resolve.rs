@@ -51,7 +51,8 @@ use indexmap::{IndexMap, IndexSet};
 
 use crate::encoding::Words;
 use crate::model::{
-    self, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table, TransportId,
+    self, Allowance, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table,
+    TransportId,
 };
 use crate::read::syntax::ast;
 use crate::report::diagnostic::{At, Diagnostic, Diagnostics};
@@ -153,11 +154,11 @@ impl Resolver<'_> {
         let limits = self.limits(&quantities, &mut messages);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
-        let (sequences, types, documents) = (self.sequences(), self.type_docs(), self.documents());
+        let (sequences, types, documents) = (self.sequences(), self.named_types(), self.documents());
         self.check_types_used();
         self.check_units_used();
         self.check_allowances();
-        let derivation = self.derivation(&messages);
+        let (derivation, allowances) = (self.derivation(&messages), self.allowances());
         Some(Protocol {
             name,
             file,
@@ -187,6 +188,7 @@ impl Resolver<'_> {
             sequences,
             types,
             errata,
+            allowances,
             models: self.tables.models,
             words: self.tables.words,
             selectors: self.tables.selectors,
@@ -202,6 +204,16 @@ impl Resolver<'_> {
             statuses: &self.tables.status_words,
             models: &self.tables.models,
         }
+    }
+
+    /// Returns the warnings that the spec accepts.
+    fn allowances(&self) -> Vec<Allowance> {
+        let allowance = |ast::Allowance { rule, at, because }: &ast::Allowance| Allowance {
+            rule: Text::new(rule),
+            at: Text::new(at),
+            because: Text::new(&because.0),
+        };
+        self.spec.allow.iter().map(allowance).collect()
     }
 
     /// Tests that the allowances name rules.

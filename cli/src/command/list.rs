@@ -113,6 +113,7 @@ fn full(out: &mut impl Write, protocol: &Protocol, messages: &[MessageId]) -> io
     layout::write(out, protocol)?;
     messages.iter().try_for_each(|id| message::write(out, protocol, *id))?;
     examples::write(out, protocol, None)?;
+    examples::sequences(out, protocol)?;
     examples::of_types(out, protocol)?;
     quantities::write(out, protocol)?;
     models::write(out, protocol, true)?;

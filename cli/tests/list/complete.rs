@@ -66,6 +66,91 @@ fn a_message_in_parts_shows_what_says_how_much_comes() {
     }
 }
 
+#[test]
+fn bits_of_the_identifier_without_a_name_are_listed() {
+    let heading = |spec: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(spec);
+        let text = list(&path, &["--full"]);
+        let line = text.lines().find(|line| line.starts_with("Identifier of ")).expect("it is there").to_owned();
+        (line, text)
+    };
+    // MEGMEET 2.1 prints six ones before the last bit.
+    let (line, text) = heading("specs/megmeet.yaml");
+    assert!(line.ends_with("7 sender, 6..1 always 1, 0 more."), "{line}");
+    assert!(text.lines().any(|row| row.split_whitespace().eq(["6..1", "always", "1"])), "{text}");
+    for spec in specs() {
+        let (line, _) = heading(spec.to_str().expect("the path is text"));
+        assert_eq!(covered(&line), covered_by(&protocol(&spec)), "{line}");
+    }
+}
+
+/// Returns the bits of all spans that a line names.
+fn covered(line: &str) -> u32 {
+    let words = line.split(": ").nth(1).expect("it has spans").split(", ");
+    let bits = words.flat_map(|words| {
+        let span = words.split(' ').next().expect("it begins with bits");
+        let (high, low) = span.split_once("..").unwrap_or((span, span));
+        let [high, low]: [u32; 2] = [high, low].map(|bit| bit.parse().expect("it is a bit"));
+        low..=high
+    });
+    bits.fold(0, |all, bit| all | 1 << bit)
+}
+
+fn covered_by(protocol: &Protocol) -> u32 {
+    protocol.identifier.fields.iter().fold(protocol.identifier.mask, |all, field| all | field.mask())
+}
+
+#[test]
+fn a_field_says_in_each_message_what_its_constant_means_there() {
+    // GCP 3.3 uses command 0x0F for two purposes.
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/gcp.yaml");
+    for (message, meaning) in [
+        ("limit_input_current", "sub_command = 0x1205: Limit the input current"),
+        ("set_operating_mode", "sub_command = 0x1111: Set the mode of the DC input"),
+    ] {
+        let shown = list(&spec, &["--message", message]);
+        assert!(shown.contains(meaning), "{shown}");
+    }
+}
+
+#[test]
+fn each_word_is_listed_with_its_owner() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/megmeet.yaml");
+    let text = list(&spec, &["--full"]);
+    let types = text.split("\nTYPE ").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("it has types");
+    assert!(types.contains("\nmodule_status.value "), "{types}");
+    assert!(!types.contains("\nvalue "), "{types}");
+}
+
+#[test]
+fn the_frames_of_a_sequence_stand_below_it_in_their_order() {
+    let mut count = 0;
+    for spec in specs() {
+        let (text, json) = (list(&spec, &["--full"]), object(&spec));
+        let protocol = protocol(&spec);
+        let tables: Vec<_> = text.split("\nSEQUENCE ").skip(1).collect();
+        assert_eq!(tables.len(), protocol.sequences.len(), "{}", spec.display());
+        for (doc, table) in protocol.sequences.iter().zip(tables) {
+            let place = format!("{}.", doc.path);
+            let examples = protocol.examples.iter().filter(|example| example.doc.path.to_string().starts_with(&place));
+            let ids: Vec<_> = examples
+                .map(|example| format!("{:0digits$X}", example.id, digits = if example.extended { 8 } else { 3 }))
+                .collect();
+            let frames = table.split("\nFRAME ").nth(1).and_then(|rest| rest.split("\n\n").next()).unwrap_or_default();
+            let shown: Vec<_> = frames.lines().skip(1).filter(|line| !line.starts_with(' ')).collect();
+            assert_eq!(shown.len(), ids.len(), "{}: {table}", spec.display());
+            assert!(shown.iter().zip(&ids).all(|(line, id)| line.starts_with(id.as_str())), "{ids:?}: {table}");
+            let name = doc.path.to_string().rsplit('.').next().map(Value::from);
+            let listed = json["examples"].as_array().expect("it is a list").iter();
+            let listed: Vec<_> = listed.filter(|example| Some(&example["sequence"]) == name.as_ref()).collect();
+            assert!(listed.iter().zip(&ids).all(|(example, id)| example["frames"][0]["id"] == **id), "{listed:?}");
+            assert_eq!(listed.len(), ids.len());
+            count += ids.len();
+        }
+    }
+    assert!(count > 50, "{count} frames");
+}
+
 fn without_blanks(text: &str) -> String {
     text.split_whitespace().collect()
 }
@@ -108,8 +193,19 @@ fn facts(protocol: &Protocol) -> Facts {
         }
         facts.extend(model.facts.iter().map(|(name, _)| ("fact", name.for_people().to_owned())));
     }
+    for known in &protocol.allowances {
+        let texts = [&known.rule, &known.at, &known.because];
+        facts.extend(texts.map(|text| ("accepted warning", text.for_people().to_owned())));
+    }
+    let of_types =
+        protocol.types.iter().filter(|known| !is_address(protocol, &known.doc)).flat_map(|known| &known.keys);
+    facts.extend(of_types.map(|(_, text)| ("key of a type", text.for_people().to_owned())));
     arrays(protocol, &mut facts);
     facts
+}
+
+fn is_address(protocol: &Protocol, doc: &Doc) -> bool {
+    protocol.address_types.iter().any(|known| known.doc.path == doc.path)
 }
 
 /// Replaces the numbered titles of elements by that of their array, which is listed once.

@@ -154,3 +154,25 @@ pub struct Erratum {
     /// Place in the spec.
     pub path: Path,
 }
+
+/// A type that a spec defines.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct NamedType {
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// What it says of the bits of its fields, as the spec writes it, by key: `scale` and `1/10`.
+    pub keys: Vec<(String, Text)>,
+}
+
+/// A warning that a spec accepts.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Allowance {
+    /// The rule that warns.
+    pub rule: Text,
+    /// The item in which the warnings are, by the keys that lead to it, as `messages.output`.
+    pub at: Text,
+    /// Why they are accepted.
+    pub because: Text,
+}

@@ -150,8 +150,22 @@ pub struct Message {
     pub long: Option<LongMessageId>,
     /// Fields of the identifier that it sends with a value of its own. Received ones may have any.
     pub sends: Vec<(FieldId, u32)>,
+    /// Constants among its fields.
+    pub fixed: Vec<FixedField>,
     /// What the bits are that nothing names.
     pub reserved: Reserved,
+}
+
+/// A field that has one value in a message.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct FixedField {
+    /// The selector that it is.
+    pub selector: SelectorId,
+    /// Its value.
+    pub value: u64,
+    /// What the spec says beside it here. Other messages may say something else of the same selector.
+    pub doc: Doc,
 }
 
 impl Message {

@@ -310,6 +310,7 @@ fn content(head: Head, signals: Table<SignalId, Signal>, arrays: Table<ArrayId, 
         set: None,
         long: None,
         sends: Vec::new(),
+        fixed: Vec::new(),
         reserved: head.reserved,
     }
 }

@@ -9,8 +9,8 @@ use super::long::Carried;
 use super::patterns::{distinct, entries};
 use super::texts::remarks;
 use crate::model::{
-    Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
+    Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FixedField, FrameId, FrameLayout, Id, Identifier,
+    Kind, LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
 use crate::read::syntax::ast;
 use crate::report::diagnostic::{At, Diagnostic};
@@ -54,6 +54,8 @@ pub struct Choice {
     pub replies: Vec<Constant>,
     /// Constant fields, each with the only kinds of frames that have it.
     fixed: Vec<(Constant, Vec<Kind>)>,
+    /// The same, each with what the spec says beside it.
+    fields: Vec<FixedField>,
     /// All of these constants, and where they are written.
     written: Vec<Written>,
 }
@@ -194,6 +196,7 @@ impl Resolver<'_> {
             set,
             long,
             sends,
+            fixed: choice.fields.clone(),
             reserved,
         };
         Draft { message, frames, choice }
@@ -273,18 +276,18 @@ impl Resolver<'_> {
         let matched = self.written(&path.key("match"), &message.pattern, Part::Match, identifier);
         let replies: Vec<_> =
             replies.iter().flat_map(|(path, pattern)| self.written(path, pattern, Part::Reply, identifier)).collect();
-        let mut fixed = Vec::new();
-        let mut written = Vec::new();
+        let (mut fixed, mut described, mut written) = (Vec::new(), Vec::new(), Vec::new());
         for (signal, value) in fields {
-            let at = signal.doc.path.at_key();
+            let (at, doc) = (signal.doc.path.at_key(), signal.doc.clone());
             let (constant, kinds) = self.fixed(signal, value);
+            described.push(FixedField { selector: constant.selector, value, doc });
             fixed.push((constant, kinds));
             written.push(Written { constant, at, part: Part::Field });
         }
         let constants = |written: &[Written]| distinct(written.iter().map(|known| known.constant).collect());
         let (of_match, of_replies) = (constants(&matched), constants(&replies));
         written.extend(matched.into_iter().chain(replies));
-        Choice { matched: of_match, replies: of_replies, fixed, written }
+        Choice { matched: of_match, replies: of_replies, fixed, fields: described, written }
     }
 
     /// Reads a pattern of numbers, and keeps the place of each.
@@ -419,8 +422,13 @@ impl Resolver<'_> {
         let pattern = known.refusal.as_ref()?;
         let path_of_pattern = Path::default().key("access").key(name).key("refusal");
         let travel = self.constants(&path_of_pattern, entries(pattern), surroundings.identifier);
-        let bare_choice =
-            Choice { matched: choice.matched.clone(), replies: Vec::new(), fixed: Vec::new(), written: Vec::new() };
+        let bare_choice = Choice {
+            matched: choice.matched.clone(),
+            replies: Vec::new(),
+            fixed: Vec::new(),
+            fields: Vec::new(),
+            written: Vec::new(),
+        };
         let bare = Owner { signals: &Table::default(), ..*owner };
         let frame = self.layout(&bare, Kind::Reply, &bare_choice, &travel, surroundings);
         self.check_constants(&frame, "refusal", choice);

@@ -4,12 +4,13 @@ use std::collections::HashMap;
 
 use super::Resolver;
 use super::texts::{remarks, text};
-use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
+use crate::model::{Doc, Enumeration, EnumerationId, NamedType, NamedValue, Numeral};
 use crate::read::syntax::ast::{self, Field, Key};
 use crate::report::diagnostic::{Diagnostic, Diagnostics};
 use crate::report::tree::Path;
 use crate::resolve::rules;
 use crate::words::number::Rational;
+use crate::words::text::Text;
 
 /// Largest number of types in a chain, in which each takes keys from the next.
 const CHAIN_LIMIT: usize = 64;
@@ -40,11 +41,33 @@ impl Merged {
     }
 }
 
+/// Returns what a type says of bits, as it is written.
+fn keys(field: &Field) -> Vec<(String, Text)> {
+    let types = (!field.types.0.is_empty()).then(|| field.types.0.join(", "));
+    let Field { bytes, bits, format_of_number, scale, offset, unit, range, .. } = field;
+    let of_type = std::iter::once((Key::Type, types.as_ref()));
+    let keys = [
+        (Key::Bytes, bytes),
+        (Key::Bits, bits),
+        (Key::As, format_of_number),
+        (Key::Scale, scale),
+        (Key::Offset, offset),
+        (Key::Unit, unit),
+        (Key::Range, range),
+    ];
+    let keys = of_type.chain(keys.map(|(key, text)| (key, text.as_ref())));
+    keys.filter_map(|(key, text)| Some((key.name().to_owned(), Text::new(text?)))).collect()
+}
+
 impl Resolver<'_> {
-    /// Returns the remarks of every type.
-    pub fn type_docs(&self) -> Vec<Doc> {
+    /// Returns every type.
+    pub fn named_types(&self) -> Vec<NamedType> {
         let root = Path::default().key("types");
-        self.spec.types.iter().map(|(name, field)| remarks!(field).doc(&root.key(name), None)).collect()
+        let named = |(name, field): (&String, &Field)| NamedType {
+            doc: remarks!(field).doc(&root.key(name), None),
+            keys: keys(field),
+        };
+        self.spec.types.iter().map(named).collect()
     }
 
     /// Tests the names of types, and that each is used.

@@ -1,13 +1,15 @@
 //! Tables of examples: the frames of a message, and the bytes of types.
 
+use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Write};
 
 use canspec_codegen::model::{
-    Example, Failure, LongExample, Meaning, Message, MessageId, ModelId, NoteRule, Origin, Protocol, ValueExample,
+    Doc, Example, Failure, LongExample, Meaning, Message, MessageId, ModelId, NoteRule, Origin, Protocol, ValueExample,
 };
+use canspec_codegen::syntax::tree::{Path, Step};
 
 use super::remarks::words as text;
-use super::{rows, words};
+use super::{remarks, rows, words};
 use crate::log;
 use crate::show::columns::Row;
 
@@ -17,6 +19,43 @@ pub fn write(out: &mut impl Write, protocol: &Protocol, id: Option<MessageId>) -
     let long = protocol.long_examples.iter().filter(|example| Some(protocol[example.long].message) == id);
     let rows = single.map(|example| of_frame(protocol, example)).chain(long.map(|example| of_long(protocol, example)));
     rows::table(out, &["EXAMPLE", "KIND", "SECTION"], &rows.collect::<Vec<_>>())
+}
+
+/// Writes the frames of each sequence, in the order of the document.
+pub fn sequences(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    let mut frames = frames_of_sequences(protocol);
+    protocol.sequences.iter().try_for_each(|sequence| {
+        let name = remarks::name_of(sequence);
+        let cells = vec![name.to_owned(), text(sequence.section.as_ref())];
+        rows::table(out, &["SEQUENCE", "SECTION"], &[rows::row(cells, sequence, Vec::new())])?;
+        let frames: Vec<_> = frames.remove(name).into_iter().flat_map(BTreeMap::into_values).collect();
+        rows::table(out, &["FRAME", "KIND", "SECTION", "MESSAGE"], &frames)
+    })
+}
+
+/// Returns the rows of the frames of each sequence, by their places in it.
+fn frames_of_sequences<'a>(protocol: &'a Protocol) -> HashMap<&'a str, BTreeMap<usize, Row>> {
+    let mut sequences: HashMap<_, BTreeMap<_, _>> = HashMap::new();
+    let mut add = |doc: &'a Doc, mut row: Row, message: Option<MessageId>| {
+        let Some((sequence, place)) = sequence(doc) else { return };
+        row.cells.push(message.map_or(String::new(), |message| protocol[message].name.clone()));
+        sequences.entry(sequence).or_default().insert(place, row);
+    };
+    for example in &protocol.examples {
+        add(&example.doc, of_frame(protocol, example), example.message);
+    }
+    for example in &protocol.long_examples {
+        add(&example.doc, of_long(protocol, example), Some(protocol[example.long].message));
+    }
+    sequences
+}
+
+/// Returns the name of the sequence in which an example stands, and its place there.
+pub fn sequence(example: &Doc) -> Option<(&str, usize)> {
+    let (frames, Step::Index(place)) = example.path.split()? else { return None };
+    let (sequence, _) = frames.split()?;
+    let (outer, Step::Key(name)) = sequence.split()? else { return None };
+    (*outer == Path::default().key("examples")).then_some((name, *place))
 }
 
 /// Writes the examples of types.

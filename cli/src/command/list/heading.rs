@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::model::{Document, IdentifierField, Protocol};
+use canspec_codegen::model::{Document, Identifier, IdentifierField, Protocol};
 
 use super::derivation;
 use crate::show::columns::text;
@@ -37,8 +37,27 @@ fn document(document: &Document) -> String {
 /// Names the fields of the identifier with their bits.
 fn identifier(protocol: &Protocol) -> String {
     let bits = if protocol.identifier.extended { 29 } else { 11 };
-    let fields: Vec<_> = protocol.identifier.fields.iter().map(field).collect();
-    format!("Identifier of {bits} bits: {}.", fields.join(", "))
+    let fields = protocol.identifier.fields.iter().map(|known| (known.shift, field(known)));
+    let nameless = nameless(&protocol.identifier).into_iter();
+    let nameless = nameless.map(|(low, high, value)| (low, format!("{} always {value}", span(low, high))));
+    let mut all: Vec<_> = fields.chain(nameless).collect();
+    all.sort_by_key(|(low, _)| std::cmp::Reverse(*low));
+    let all: Vec<_> = all.into_iter().map(|(_, text)| text).collect();
+    format!("Identifier of {bits} bits: {}.", all.join(", "))
+}
+
+/// Returns the bits that nothing names and that never change: the least and the most significant one, and their value.
+pub fn nameless(identifier: &Identifier) -> Vec<(u8, u8, u8)> {
+    let named = identifier.fields.iter().fold(0, |named, field| named | field.mask());
+    let mut all: Vec<(u8, u8, u8)> = Vec::new();
+    for bit in (0..29).filter(|bit| (identifier.mask & !named) >> bit & 1 == 1) {
+        let value = u8::from(identifier.value >> bit & 1 == 1);
+        match all.last_mut().filter(|(_, high, last)| high + 1 == bit && *last == value) {
+            Some((_, high, _)) => *high = bit,
+            None => all.push((bit, bit, value)),
+        }
+    }
+    all
 }
 
 fn field(field: &IdentifierField) -> String {
@@ -48,6 +67,10 @@ fn field(field: &IdentifierField) -> String {
 
 /// Writes the bits of a field of the identifier.
 pub fn bits(field: &IdentifierField) -> String {
-    let (high, low) = (field.shift + field.width - 1, field.shift);
+    span(field.shift, field.shift + field.width - 1)
+}
+
+/// Writes bits as a spec does.
+pub fn span(low: u8, high: u8) -> String {
     if high == low { high.to_string() } else { format!("{high}..{low}") }
 }

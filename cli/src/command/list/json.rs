@@ -34,7 +34,7 @@ struct Object<'a> {
     accesses: Vec<addressing::Access<'a>>,
     foreign: Vec<addressing::Foreign<'a>>,
     transports: Vec<surroundings::Transport<'a>>,
-    types: Vec<remarks::Named<'a>>,
+    types: Vec<remarks::Type<'a>>,
     messages: Vec<message::Message<'a>>,
     quantities: Vec<surroundings::Quantity<'a>>,
     models: Vec<surroundings::Model<'a>>,
@@ -45,6 +45,7 @@ struct Object<'a> {
     type_examples: Vec<examples::TypeExample<'a>>,
     sequences: Vec<remarks::Named<'a>>,
     errata: Vec<surroundings::Erratum<'a>>,
+    allow: Vec<surroundings::Allowance<'a>>,
 }
 
 /// Writes a protocol with some of its messages.
@@ -69,7 +70,7 @@ fn object<'a>(protocol: &'a Protocol, messages: &[MessageId]) -> Object<'a> {
         accesses: protocol.accesses.iter().map(|access| addressing::Access::of(protocol, access)).collect(),
         foreign: protocol.foreign.iter().map(|foreign| addressing::Foreign::of(protocol, foreign)).collect(),
         transports: protocol.transports.iter().map(|known| surroundings::Transport::of(protocol, known)).collect(),
-        types: remarks::Named::types(protocol),
+        types: remarks::Type::all(protocol),
         messages: messages.iter().map(|id| message::Message::of(protocol, *id)).collect(),
         quantities: protocol.quantities.iter().map(|known| surroundings::Quantity::of(protocol, known)).collect(),
         models: protocol.models.iter().map(surroundings::Model::from).collect(),
@@ -80,5 +81,6 @@ fn object<'a>(protocol: &'a Protocol, messages: &[MessageId]) -> Object<'a> {
         type_examples: protocol.value_examples.iter().map(examples::TypeExample::from).collect(),
         sequences: protocol.sequences.iter().map(remarks::Named::from).collect(),
         errata: protocol.errata.iter().map(surroundings::Erratum::from).collect(),
+        allow: protocol.allowances.iter().map(surroundings::Allowance::from).collect(),
     }
 }

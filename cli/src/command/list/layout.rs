@@ -1,21 +1,21 @@
 //! Tables of what messages share: identifier, header, addresses, addressing modes, accesses, transports and types.
 
+use std::cmp::Reverse;
 use std::io::{self, Write};
 
 use canspec_codegen::model::{
-    Access, AddressPattern, AddressType, Doc, EnumerationId, FieldId, Foreign, IdentifierField, Kind, Mode, Protocol,
-    Selector, SelectorPlace, Side, Transport, WrittenPlace,
+    Access, AddressPattern, AddressType, Allowance, EnumerationId, FieldId, Foreign, IdentifierField, Kind, Mode,
+    Protocol, Selector, SelectorPlace, Side, Transport, WrittenPlace,
 };
 
-use super::remarks::{self, words as text};
+use super::remarks::{self, Type, words as text};
 use super::rows::{row, table};
 use super::{heading, words};
 use crate::show::columns::Row;
 
 /// Writes the tables that have rows.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    let fields: Vec<_> = protocol.identifier.fields.iter().map(|known| field(protocol, known)).collect();
-    table(out, &["BITS", "IDENTIFIER", "SECTION"], &fields)?;
+    table(out, &["BITS", "IDENTIFIER", "SECTION"], &identifier(protocol))?;
     let header: Vec<_> = protocol.selectors.iter().filter_map(|known| selector(protocol, known)).collect();
     table(out, &["BYTES", "HEADER", "SECTION"], &header)?;
     table(out, &["ADDRESS", "SECTION"], &protocol.address_types.iter().map(address).collect::<Vec<_>>())?;
@@ -26,8 +26,25 @@ pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let others: Vec<_> = protocol.foreign.iter().map(|known| foreign(protocol, known)).collect();
     table(out, &["FOREIGN", "SECTION"], &others)?;
     types(out, remarks::types(protocol))?;
-    let sequences = protocol.sequences.iter().map(|doc| named((remarks::name_of(doc), doc)));
-    table(out, &["SEQUENCE", "SECTION"], &sequences.collect::<Vec<_>>())
+    let allowed: Vec<_> = protocol.allowances.iter().map(allowance).collect();
+    table(out, &["ALLOWED WARNING", "AT"], &allowed)
+}
+
+/// Returns the rows of the fields of the identifier, and of the bits that nothing names.
+fn identifier(protocol: &Protocol) -> Vec<Row> {
+    let fields = protocol.identifier.fields.iter().map(|known| (known.shift, field(protocol, known)));
+    let nameless = heading::nameless(&protocol.identifier).into_iter().map(|(low, high, value)| {
+        let cells = vec![heading::span(low, high), String::new(), String::new()];
+        (low, Row { cells, last: vec![format!("always {value}")], ..Row::default() })
+    });
+    let mut all: Vec<_> = fields.chain(nameless).collect();
+    all.sort_by_key(|(low, _)| Reverse(*low));
+    all.into_iter().map(|(_, row)| row).collect()
+}
+
+fn allowance(known: &Allowance) -> Row {
+    let cells = vec![known.rule.for_people().to_owned(), known.at.for_people().to_owned()];
+    Row { cells, last: vec![known.because.for_people().to_owned()], ..Row::default() }
 }
 
 /// Writes a table of accesses.
@@ -37,13 +54,12 @@ pub fn accesses(out: &mut impl Write, protocol: &Protocol, accesses: &[&Access])
 }
 
 /// Writes a table of types with their remarks.
-pub fn types(out: &mut impl Write, types: Vec<(&str, &Doc)>) -> io::Result<()> {
+pub fn types(out: &mut impl Write, types: Vec<Type>) -> io::Result<()> {
+    let named = |Type { name, doc, keys }: Type| {
+        let keys = keys.iter().map(|(key, text)| format!("{key} {}", text.for_people())).collect();
+        row(vec![name, text(doc.section.as_ref())], doc, keys)
+    };
     table(out, &["TYPE", "SECTION"], &types.into_iter().map(named).collect::<Vec<_>>())
-}
-
-/// Returns the row of an item that shows only its remarks.
-fn named((name, doc): (&str, &Doc)) -> Row {
-    row(vec![name.to_owned(), text(doc.section.as_ref())], doc, Vec::new())
 }
 
 fn field(protocol: &Protocol, field: &IdentifierField) -> Row {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::model::{Doc, Message, MessageId, Protocol, Signal, StatusBit, only};
+use canspec_codegen::model::{Doc, FixedField, Message, MessageId, Protocol, Signal, StatusBit, only};
 
 use super::remarks::{own_section, sentences, title, words as text};
 use super::rows::{self, titled};
@@ -36,7 +36,18 @@ fn head(protocol: &Protocol, id: MessageId) -> Row {
     facts.extend(sends.map(|(field, value)| format!("{} sent as {value:#X}", protocol[*field].name)));
     facts.extend(message.reserved.are_ones.then(|| "bits that nothing names are sent as 1".to_owned()));
     facts.extend(message.reserved.are_free.then(|| "received ones may have any value".to_owned()));
-    rows::row(cells, &message.doc, facts)
+    let mut row = rows::row(cells, &message.doc, facts);
+    row.below.extend(message.fixed.iter().map(|known| about_fixed(protocol, message, known)));
+    row
+}
+
+/// Says what a field is that has one value in the message.
+fn about_fixed(protocol: &Protocol, message: &Message, known: &FixedField) -> String {
+    let value = protocol.selector_value(known.selector, known.value);
+    let title = title(&known.doc).map_or(String::new(), |title| format!(": {title}"));
+    let section = inner_section(&known.doc, &message.doc);
+    let head = format!("{} = {value}{title}{section}", protocol[known.selector].name);
+    std::iter::once(head).chain(sentences(&known.doc)).collect::<Vec<_>>().join("; ")
 }
 
 fn signals(out: &mut impl Write, protocol: &Protocol, message: &Message, heading: &str) -> io::Result<()> {

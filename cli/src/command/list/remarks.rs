@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use canspec_codegen::model::{Doc, Protocol};
+use canspec_codegen::model::{Doc, NamedType, Protocol};
 use canspec_codegen::syntax::tree::Step;
 use canspec_codegen::text::Text;
 
@@ -46,13 +46,33 @@ pub fn name_of(doc: &Doc) -> &str {
     }
 }
 
+/// A type, named values, a status word, or a word.
+pub struct Type<'a> {
+    pub name: String,
+    pub doc: &'a Doc,
+    /// What a type says of bits, as the spec writes it, by key.
+    pub keys: &'a [(String, Text)],
+}
+
 /// Returns the types, named values, status words and words that have remarks, by name. Kinds of addresses are others.
-pub fn types(protocol: &Protocol) -> Vec<(&str, &Doc)> {
-    let own = protocol.types.iter().chain(&protocol.words).map(|doc| (name_of(doc), doc));
-    let values = protocol.enumerations.iter().map(|known| (known.name.as_str(), &known.doc));
-    let status = protocol.status_words.iter().map(|known| (known.name.as_str(), &known.doc));
+///
+/// A word has the keys that lead to it as its name, as `status.value`.
+pub fn types(protocol: &Protocol) -> Vec<Type<'_>> {
+    let own = protocol.types.iter();
+    let own = own.map(|NamedType { doc, keys, .. }| Type { name: name_of(doc).to_owned(), doc, keys });
+    let words = protocol.words.iter().map(|doc| (place_of(doc), doc));
+    let values = protocol.enumerations.iter().map(|known| (known.name.clone(), &known.doc));
+    let status = protocol.status_words.iter().map(|known| (known.name.clone(), &known.doc));
+    let others = words.chain(values).chain(status).map(|(name, doc)| Type { name, doc, keys: &[] });
     let mut seen: HashSet<_> = protocol.address_types.iter().map(|known| &known.doc.path).collect();
-    own.chain(values).chain(status).filter(|(_, doc)| is_known(doc) && seen.insert(&doc.path)).collect()
+    let is_shown = |known: &Type| is_known(known.doc) || !known.keys.is_empty();
+    own.chain(others).filter(|known| is_shown(known) && seen.insert(&known.doc.path)).collect()
+}
+
+/// Returns the keys that lead to an item, without the first one.
+fn place_of(doc: &Doc) -> String {
+    let place = doc.path.to_string();
+    place.split_once('.').map_or(place.clone(), |(_, inner)| inner.to_owned())
 }
 
 /// Tests whether the spec says more of an item than where it stands.

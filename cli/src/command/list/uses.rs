@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use canspec_codegen::model::{Access, Doc, MessageId, Protocol, Signal, Timing};
 use canspec_codegen::text::Text;
 
-use super::{meaning, remarks};
+use super::meaning;
+use super::remarks::{self, Type};
 
 /// What the messages refer to.
 pub struct Uses<'a> {
@@ -27,13 +28,13 @@ impl<'a> Uses<'a> {
     }
 
     /// Returns the types of their signals that have remarks, by name.
-    pub fn types(&self) -> Vec<(&'a str, &'a Doc)> {
+    pub fn types(&self) -> Vec<Type<'a>> {
         let signals: Vec<_> = self.messages.iter().flat_map(|id| signals(self.protocol, *id)).collect();
         let mut names: BTreeSet<&str> = signals.iter().flat_map(|signal| &signal.types).map(String::as_str).collect();
         let encodings = || signals.iter().map(|signal| &signal.encoding);
         names.extend(encodings().filter_map(|known| Some(self.protocol[known.enumeration()?].name.as_str())));
         names.extend(encodings().filter_map(|known| Some(self.protocol[known.status_word()?].name.as_str())));
-        let is_meant = |(name, doc): &(&str, &Doc)| names.contains(name) && remarks::is_remarked(doc);
+        let is_meant = |known: &Type| names.contains(known.name.as_str()) && remarks::is_remarked(known.doc);
         remarks::types(self.protocol).into_iter().filter(is_meant).collect()
     }
 
@@ -50,7 +51,7 @@ impl<'a> Uses<'a> {
     pub fn errata(&self) -> BTreeSet<&'a Text> {
         let messages = self.messages.iter().flat_map(|id| docs(self.protocol, *id));
         let others = self.accesses().into_iter().map(|access| &access.doc);
-        let others = others.chain(self.types().into_iter().map(|(_, doc)| doc));
+        let others = others.chain(self.types().into_iter().map(|known| known.doc));
         let others = others.chain(self.times().into_iter().map(|timing| &timing.doc));
         messages.chain(others).flat_map(|doc| &doc.errata).collect()
     }

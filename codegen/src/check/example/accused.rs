@@ -22,7 +22,8 @@ pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path
     let collected = collect(protocol);
     let fields: Vec<_> =
         collected.iter().map(|((message, signal), known)| Field::new(protocol, *message, *signal, known)).collect();
-    let types: Vec<_> = protocol.types.iter().filter_map(|of| Accused::of_type(protocol, &of.path, &fields)).collect();
+    let types = protocol.types.iter().map(|known| &known.doc.path);
+    let types: Vec<_> = types.filter_map(|path| Accused::of_type(protocol, path, &fields)).collect();
     let alone: Vec<_> = fields.iter().map(|field| Accused::of_field(protocol, field)).collect();
     let verdicts: [(&[Accused], Verdict); 4] = [
         (&types, Accused::repaired),

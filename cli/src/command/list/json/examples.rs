@@ -18,6 +18,8 @@ pub struct Example<'a> {
     notes: Vec<&'static str>,
     fails: Option<&'static str>,
     origin: &'static str,
+    /// The sequence in which it stands.
+    sequence: Option<&'a str>,
     #[serde(flatten)]
     remarks: Remarks<'a>,
 }
@@ -55,6 +57,7 @@ fn of_frame<'a>(protocol: &'a Protocol, example: &'a model::Example) -> Example<
         notes: rules(&example.notes),
         fails: example.fails.map(model::Failure::name),
         origin: words::origin(example.origin),
+        sequence: examples::sequence(&example.doc).map(|(name, _)| name),
         remarks: (&example.doc).into(),
     }
 }
@@ -75,6 +78,7 @@ fn of_long<'a>(protocol: &'a Protocol, example: &'a LongExample) -> Example<'a> 
         notes: rules(&example.notes),
         fails: None,
         origin: words::origin(example.origin),
+        sequence: examples::sequence(&example.doc).map(|(name, _)| name),
         remarks: (&example.doc).into(),
     }
 }

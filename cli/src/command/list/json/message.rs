@@ -21,6 +21,7 @@ pub struct Message<'a> {
     every: Option<&'a str>,
     reserved: Reserved,
     sends: Vec<Sent<'a>>,
+    fixed: Vec<Fixed<'a>>,
     members: Vec<&'a str>,
     frames: Vec<Frame<'a>>,
     refusals: Vec<Frame<'a>>,
@@ -42,6 +43,21 @@ struct Sent<'a> {
     value: u32,
 }
 
+/// A field that has one value in the message.
+#[derive(Serialize)]
+struct Fixed<'a> {
+    selector: &'a str,
+    value: u64,
+    #[serde(flatten)]
+    remarks: Remarks<'a>,
+}
+
+impl<'a> Fixed<'a> {
+    fn of(protocol: &'a Protocol, known: &'a model::FixedField) -> Self {
+        Self { selector: &protocol[known.selector].name, value: known.value, remarks: (&known.doc).into() }
+    }
+}
+
 impl<'a> Message<'a> {
     /// Returns a message of a protocol.
     pub fn of(protocol: &'a Protocol, id: MessageId) -> Self {
@@ -58,6 +74,7 @@ impl<'a> Message<'a> {
             every: message.every.map(|timing| protocol[timing].name.as_str()),
             reserved: Reserved { send: are_ones.into(), expect: if are_free { "any" } else { "sent" } },
             sends: sends.collect(),
+            fixed: message.fixed.iter().map(|known| Fixed::of(protocol, known)).collect(),
             members: members.map(|member| protocol[*member].name.as_str()).collect(),
             frames: protocol.frames_of(message).map(|frame| Frame::of(protocol, frame)).collect(),
             refusals: message.refusals.iter().map(|frame| Frame::of(protocol, frame)).collect(),

@@ -1,5 +1,7 @@
 //! What a spec says beside an item.
 
+use std::collections::BTreeMap;
+
 use canspec_codegen::model::{Doc, ModelId, NamedValue, Protocol};
 use canspec_codegen::text::Text;
 use serde::Serialize;
@@ -31,16 +33,30 @@ pub struct Named<'a> {
     remarks: Remarks<'a>,
 }
 
+/// A type, named values, a status word, or a word.
+#[derive(Serialize)]
+pub struct Type<'a> {
+    name: String,
+    #[serde(flatten)]
+    remarks: Remarks<'a>,
+    /// What a type says of bits, as the spec writes it.
+    keys: BTreeMap<&'a str, &'a Text>,
+}
+
 impl<'a> From<&'a Doc> for Named<'a> {
     fn from(doc: &'a Doc) -> Self {
         Self { name: remarks::name_of(doc), remarks: doc.into() }
     }
 }
 
-impl<'a> Named<'a> {
-    /// Returns the types that have remarks: those of the spec, named values, status words, and words.
-    pub fn types(protocol: &'a Protocol) -> Vec<Self> {
-        remarks::types(protocol).into_iter().map(|(name, doc)| Self { name, remarks: doc.into() }).collect()
+impl<'a> Type<'a> {
+    /// Returns the types that say something: those of the spec, named values, status words, and words.
+    pub fn all(protocol: &'a Protocol) -> Vec<Self> {
+        let of = |remarks::Type { name, doc, keys }: remarks::Type<'a>| {
+            let keys = keys.iter().map(|(key, text)| (key.as_str(), text)).collect();
+            Self { name, remarks: doc.into(), keys }
+        };
+        remarks::types(protocol).into_iter().map(of).collect()
     }
 }
 

@@ -1,4 +1,5 @@
-//! What surrounds the messages: documents, transports, quantities, device models, times, procedures and errata.
+//! What surrounds the messages: documents, transports, quantities, device models, times, procedures, errata and
+//! accepted warnings.
 
 use canspec_codegen::model::{self, FieldId, Protocol, SignalPath, Standard};
 use canspec_codegen::text::Text;
@@ -283,5 +284,20 @@ impl<'a> From<&'a model::Erratum> for Erratum<'a> {
     fn from(known: &'a model::Erratum) -> Self {
         let model::Erratum { name, kind, section, prints, uses, because, .. } = known;
         Self { name, kind, section: section.as_ref(), prints, uses, because }
+    }
+}
+
+/// A warning that the spec accepts.
+#[derive(Serialize)]
+pub struct Allowance<'a> {
+    rule: &'a Text,
+    at: &'a Text,
+    because: &'a Text,
+}
+
+impl<'a> From<&'a model::Allowance> for Allowance<'a> {
+    fn from(known: &'a model::Allowance) -> Self {
+        let model::Allowance { rule, at, because, .. } = known;
+        Self { rule, at, because }
     }
 }

@@ -414,6 +414,6 @@ fn specials(signal: &model::Signal) -> Option<String> {
 fn type_notes(protocol: &Protocol, signal: &model::Signal, coding: &Coding) -> impl Iterator<Item = String> {
     let paths = signal.types.iter().map(|name| Path::default().key("types").key(name));
     let others = paths.filter(|path| coding.documented.as_ref() != Some(path));
-    let docs = others.filter_map(|path| protocol.types.iter().find(|doc| doc.path == path));
+    let docs = others.filter_map(|path| protocol.types.iter().map(|known| &known.doc).find(|doc| doc.path == path));
     docs.filter_map(|doc| Some(doc::sentence_of(&doc.note.as_ref()?.in_rust_doc())))
 }
