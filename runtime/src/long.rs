@@ -55,6 +55,19 @@ pub trait LongLayout: Copy + 'static {
         (data.len() >= Self::SHORTEST).then(|| Self::DECODE(data))
     }
 
+    /// The same as [`decode`](Self::decode), of a message of a device model. Optional values that the model does not
+    /// have are left out, unless bits show them.
+    fn decode_for(model: impl Into<u8>, data: &[u8]) -> Option<Self> {
+        Self::decode(data).map(|values| values.on_model(data, Some(model.into())))
+    }
+
+    /// Leaves out optional values that the device model does not have, if no bit of the data shows them.
+    #[doc(hidden)]
+    #[must_use]
+    fn on_model(self, _data: &[u8], _model: Option<u8>) -> Self {
+        self
+    }
+
     /// Writes the values to the front of a buffer, and returns what is written. It also overwrites
     /// the rest of the buffer. [`LONGEST`](Self::LONGEST) bytes are always enough. Bits that no
     /// field covers are those of [`BLANK`](Self::BLANK). Constants are none of the fields: what sends

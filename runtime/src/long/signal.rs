@@ -1,10 +1,10 @@
 //! Signals of long messages: each has its place in eight bytes of the data.
 
-use core::array;
+use core::{array, slice};
 
 use crate::frame::padded;
 use crate::plumbing::{ByteOrder, Physical, Raw};
-use crate::{Data, Elements, Error, Payload, Signal};
+use crate::{AnySignal as _, Data, Elements, Error, Payload, Signal};
 
 /// Most elements of an array.
 const MOST: usize = 256;
@@ -94,6 +94,23 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
         get: impl Fn(&Signal<R, F>, &Data) -> T,
     ) -> Elements<T, N> {
         Elements::from_fn(count, |index| get(&self.signal, &self.window(data, index)))
+    }
+
+    /// Leaves out the value of the signal if the device model does not have it and no bit shows it. Generated code calls
+    /// it.
+    #[doc(hidden)]
+    pub fn hide<T>(&self, value: &mut Option<T>, data: &[u8], model: Option<u8>) {
+        self.hide_all(slice::from_mut(value), data, model);
+    }
+
+    /// The same for the values of an array.
+    #[doc(hidden)]
+    pub fn hide_all<T>(&self, values: &mut [Option<T>], data: &[u8], model: Option<u8>) {
+        for (index, value) in values.iter_mut().enumerate() {
+            if self.signal.is_hidden(&self.window(data, index), model) {
+                *value = None;
+            }
+        }
     }
 
     /// Writes the value of the signal. `put` is a method of [`Signal`].
@@ -208,6 +225,12 @@ impl<'a> LongPayload<'a> {
     /// Sets the number of data bytes, of a message that can have several.
     pub const fn end_after(&mut self, length: usize) {
         self.length = Some(length);
+    }
+
+    /// Tests whether the message is as long as a signal needs although that has no value: a request to a device model
+    /// that has it, unlike others, is refused without it.
+    pub fn reaches<R: Raw, F: Physical<R>>(&self, signal: &Signal<R, F>) -> bool {
+        self.rules.reaches(signal, 0)
     }
 
     /// Returns the number of data bytes, if the message can have several.

@@ -192,6 +192,101 @@ fn a_device_model_has_only_blank_bytes_where_it_lacks_a_text() {
     assert!(plate(last).encode_by(on(8), 0, &mut [0; 23]).is_ok());
 }
 
+/// The charge. A name of two bytes, two heaters and a power behind it are not on model 7, where their bits are 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Charge {
+    percent: u8,
+    name: Option<Bytes<2>>,
+    heater: [Option<u8>; 2],
+    power: Option<u16>,
+}
+
+impl Charge {
+    const PERCENT: LongSignal<u8> = LongSignal::new(0, Signal::new("percent", Place::byte(0)));
+    const NAME: LongText<Bytes<2>> =
+        LongText::new(1, Signal::new("name", Place::byte(0)).lacking(&[(7, Lack::Signal(0xFF, 0xFF))]));
+    const HEATER: LongSignal<u8> =
+        LongSignal::new(3, Signal::new("heater", Place::byte(0)).lacking(&[(7, Lack::Signal(0xFF, 0xFF))])).every(1);
+    const POWER: LongSignal<u16> =
+        LongSignal::new(5, Signal::new("power", Place::bytes(0, 1)).lacking(&[(7, Lack::Signal(0xFFFF, 0xFFFF))]));
+}
+
+impl LongLayout for Charge {
+    const MESSAGE: &'static str = "charge";
+    const SHORTEST: usize = 1;
+    const LONGEST: usize = 7;
+    const BLANK: u8 = 0xFF;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        percent: Self::PERCENT.read(data, Signal::get),
+        name: Self::NAME.read_optional(data),
+        heater: Self::HEATER.read_optional_array(data, Signal::get_some),
+        power: Self::POWER.read_optional(data, Signal::get_some),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        payload.end_after(1);
+        if message.name.is_some() || payload.reaches(Self::NAME.byte()) {
+            payload.end_after(3);
+        }
+        if message.heater[0].is_some() || message.heater[1].is_some() || payload.reaches(Self::HEATER.signal()) {
+            payload.end_after(5);
+        }
+        if message.power.is_some() || payload.reaches(Self::POWER.signal()) {
+            payload.end_after(7);
+        }
+        Self::PERCENT.write(message.percent, payload, Signal::put)?;
+        Self::NAME.write_optional(&message.name, payload)?;
+        Self::HEATER.write_all(&message.heater, payload, Signal::put_some)?;
+        Self::POWER.write(message.power, payload, Signal::put_some)
+    };
+
+    fn on_model(mut self, data: &[u8], model: Option<u8>) -> Self {
+        Self::NAME.hide(&mut self.name, data, model);
+        Self::HEATER.hide_all(&mut self.heater, data, model);
+        Self::POWER.hide(&mut self.power, data, model);
+        self
+    }
+}
+
+#[test]
+fn what_a_device_model_does_not_have_is_there_only_if_bits_show_it() {
+    let bare = Charge { percent: 84, name: None, heater: [None; 2], power: None };
+    let (name, power) = (Bytes::new([0xFF, 0x41]), 0xFFFE);
+    for (data, shown) in [
+        ([84, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF], bare),
+        ([84, 0xFF, 0x41, 0xFF, 0xFF, 0xFF, 0xFF], Charge { name: Some(name), ..bare }),
+        ([84, 0xFF, 0xFF, 5, 0xFF, 0xFF, 0xFF], Charge { heater: [Some(5), None], ..bare }),
+        ([84, 0xFF, 0xFF, 0xFF, 5, 0xFF, 0xFF], Charge { heater: [None, Some(5)], ..bare }),
+        ([84, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE], Charge { power: Some(power), ..bare }),
+    ] {
+        assert_eq!(Charge::decode_for(7, &data), Some(shown), "{data:?}");
+        let whole = Charge::decode(&data);
+        assert_eq!(Charge::decode_for(8, &data), whole, "{data:?}");
+        assert!(whole.is_some_and(|whole| whole.name.is_some() && whole.power.is_some()));
+    }
+    assert_eq!(Charge::decode_for(7, &[84]), Some(bare));
+    assert_eq!(Charge::decode_for(7, &[]), None);
+}
+
+#[test]
+fn a_request_to_a_device_model_has_what_that_model_has() {
+    let on = |model| Payload::within_limits("charge", [0; 8]).for_model(model);
+    let bare = Charge { percent: 84, name: None, heater: [None; 2], power: None };
+    let name = Some(Bytes::new([0x41, 0x42]));
+    let sent = |rules, values: Charge| values.encode_by(rules, 0, &mut [0; 7]).map(|data| data.to_vec()).map_err(said);
+    let missing = |signal| Err(("charge", signal, Reason::Missing));
+    assert_eq!(sent(on(Some(7)), bare), Ok([84].to_vec()));
+    assert_eq!(sent(on(None), bare), Ok([84].to_vec()));
+    assert_eq!(sent(Payload::new("charge", [0; 8]).for_model(Some(8)), bare), Ok([84].to_vec()));
+    assert_eq!(sent(on(Some(8)), bare), missing("name"));
+    assert_eq!(sent(on(Some(8)), Charge { name, ..bare }), missing("heater"));
+    let heated = Charge { name, heater: [Some(1), Some(2)], ..bare };
+    assert_eq!(sent(on(Some(8)), heated), missing("power"));
+    assert_eq!(sent(on(Some(8)), Charge { power: Some(3), ..heated }), Ok([84, 0x41, 0x42, 1, 2, 0, 3].to_vec()));
+    // Bits that are blank show nothing.
+    let blank = Charge { power: Some(0xFFFF), ..bare };
+    assert_eq!(sent(on(Some(7)), blank), Ok([84, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF].to_vec()));
+}
+
 /// A count, and 2 to 6 letters or bytes behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Open<T> {

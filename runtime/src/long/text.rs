@@ -3,8 +3,7 @@
 use core::marker::PhantomData;
 
 use super::LongPayload;
-use crate::error::Fault;
-use crate::{Elements, Error, Signal};
+use crate::{AnySignal as _, Elements, Error, Signal};
 
 /// Whole bytes as the value of a field.
 pub trait ByteRun: Copy {
@@ -78,6 +77,15 @@ impl<T: ByteRun> LongText<T> {
         (self.reach(T::MOST) <= data.len()).then(|| self.read(data))
     }
 
+    /// Leaves out a text if the device model does not have it and no bit shows it. Generated code calls it.
+    #[doc(hidden)]
+    pub fn hide(&self, text: &mut Option<T>, data: &[u8], model: Option<u8>) {
+        let is_blank = |byte: &u8| self.byte.is_hidden(&[*byte, 0, 0, 0, 0, 0, 0, 0], model);
+        if data.iter().skip(self.start.into()).take(T::MOST).all(is_blank) {
+            *text = None;
+        }
+    }
+
     /// Writes the text. If it ends where the data end, only as many filling bytes are written as the
     /// document wants.
     ///
@@ -111,12 +119,16 @@ impl<T: ByteRun> LongText<T> {
     /// # Errors
     ///
     /// The same as [`write`](Self::write). It also refuses to leave out what the message is long
-    /// enough for.
+    /// enough for, if the device model has it.
     pub fn write_optional(&'static self, text: &Option<T>, payload: &mut LongPayload<'_>) -> Result<(), Error> {
         match (text, payload.length()) {
             (Some(text), _) => self.write(text, payload),
             (None, Some(length)) if self.reach(T::MOST) > length => Ok(()),
-            (None, _) => Err(self.byte.refused(Fault::Missing, &payload.rules)),
+            (None, _) => {
+                // What is blank stands there already.
+                let mut alone = payload.rules;
+                self.byte.put_some(None, &mut alone)
+            }
         }
     }
 }

@@ -52,6 +52,11 @@ pub mod oven {
 
 pub mod ovens;
 
+/// Heaters, as `specs/heater.yaml` describes them.
+pub mod heater {
+    canspec_runtime::include_protocol!("heater");
+}
+
 use canspec_runtime::Layout;
 use winch::{Error, Message, Reply, Request, Run, Target, embedded_can};
 

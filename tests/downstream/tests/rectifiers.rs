@@ -2,7 +2,11 @@
 
 use canspec_runtime::{AfterSilence, Protocol};
 use winch_driver::rectifier::embedded_can::{Frame as _, StandardId};
-use winch_driver::rectifier::{Error, Frame, Message, Model, Received, SetCharge, SetOutput, SetService, Target};
+use winch_driver::rectifier::parts::{Assembler, Outcome};
+use winch_driver::rectifier::{
+    Bytes, Error, Frame, LongLayout, Message, Model, Parted, Received, SetCharge, SetHeating, SetHeatingPart,
+    SetOutput, SetService, Target,
+};
 use winch_driver::winch;
 
 fn received(id: u16, data: &[u8], model: Model) -> Received {
@@ -98,4 +102,69 @@ fn a_value_is_absent_only_on_a_device_model_that_has_it() {
     assert_eq!([0, 0xFF, 1].map(|high| hours(Model::R30, high)), [Some(0), None, Some(0x0101)]);
     assert_eq!([0, 1].map(|high| hours(Model::R20, high)), [None, Some(0x0101)]);
     assert_eq!(shown(&received(0x009, &[0; 4], Model::R20)), [""; 0]);
+}
+
+/// Returns the data of a message of several frames to a device model.
+fn heated(model: Option<Model>, values: SetHeating) -> Result<Vec<u8>, String> {
+    let blank = SetHeatingPart::SET.blank_request(Target::Rectifier).expect("it has this target");
+    let frames = match model {
+        Some(model) => values.frames_for(model, &blank),
+        None => values.frames(&blank),
+    };
+    let parts = frames.map_err(|refused| refused.to_string())?;
+    let data: Vec<u8> = parts.flat_map(|frame| frame.data()[1..].to_vec()).collect();
+    let length = usize::from(data[0]);
+    Ok(data[1..=length].to_vec())
+}
+
+const BARE: SetHeating = SetHeating { charge_percent: 84, fan: 0, code: None, heater_w: [None; 2], power_w: None };
+
+#[test]
+fn a_request_of_several_frames_has_what_only_its_device_model_has() {
+    let cooled = SetHeating { fan: 3, ..BARE };
+    let whole =
+        SetHeating { code: Some(Bytes::new([7; 9])), heater_w: [Some(5), Some(6)], power_w: Some(258), ..cooled };
+    assert_eq!(heated(Some(Model::R20), BARE).as_deref(), Ok(&[84, 0][..]));
+    assert_eq!(heated(None, cooled).as_deref(), Ok(&[84, 3][..]), "no model is chosen");
+    let sent = [84, 3, 7, 7, 7, 7, 7, 7, 7, 7, 7, 5, 6, 1, 2];
+    assert_eq!(heated(Some(Model::R30), whole).as_deref(), Ok(&sent[..]));
+    let missing = |signal| Err(format!("`{signal}` of `set_heating` is left out, but the frame is long enough for it"));
+    assert_eq!(heated(Some(Model::R30), cooled), missing("code"));
+    assert_eq!(heated(Some(Model::R30), SetHeating { power_w: None, ..whole }), missing("power"));
+    let lacking = |signal| Err(format!("`{signal}` of `set_heating` has no such value"));
+    assert_eq!(heated(Some(Model::R20), cooled), lacking("fan"));
+    assert_eq!(heated(Some(Model::R20), SetHeating { fan: 0, ..whole }), lacking("code"));
+}
+
+/// Returns the reply in six parts that carries data.
+fn confirmed(data: [u8; 15]) -> impl Iterator<Item = Frame> {
+    let mut carried = vec![15];
+    carried.extend(data);
+    carried.resize(18, 0);
+    let parts: Vec<_> = carried.chunks(3).map(<[u8]>::to_vec).collect();
+    parts.into_iter().zip(0..).map(|(part, number)| {
+        let id = StandardId::new(0x00B).expect("eleven bits");
+        Frame::new(id, &[number, part[0], part[1], part[2]]).expect("at most eight bytes")
+    })
+}
+
+#[test]
+fn a_value_of_several_frames_that_the_device_model_does_not_have_is_there_only_if_bits_show_it() {
+    for (place, byte, shown) in [
+        (0, 84, BARE),
+        (1, 9, SetHeating { fan: 9, ..BARE }),
+        (10, 1, SetHeating { code: Some(Bytes::new([0, 0, 0, 0, 0, 0, 0, 0, 1])), ..BARE }),
+        (12, 5, SetHeating { heater_w: [None, Some(5)], ..BARE }),
+        (14, 2, SetHeating { power_w: Some(2), ..BARE }),
+    ] {
+        let mut data = [0; 15];
+        (data[0], data[place]) = (84, byte);
+        assert_eq!(SetHeating::decode_for(Model::R20, &data), Some(shown), "{place}");
+        let mut assembler = Assembler::<SetHeating, 1>::new(500).for_model(Model::R20);
+        let ended: Vec<_> = confirmed(data).flat_map(|frame| assembler.receive(&frame, 0)).collect();
+        let [Outcome::Whole(whole)] = ended.as_slice() else { panic!("{ended:?}") };
+        assert_eq!(whole.values, shown);
+        let of_r30 = SetHeating::decode_for(Model::R30, &data).expect("all bytes");
+        assert!(of_r30.code.is_some() && of_r30.power_w.is_some() && of_r30.heater_w.iter().all(Option::is_some));
+    }
 }

@@ -109,7 +109,7 @@ fn layout(long: &Long) -> TokenStream {
     let [shortest, longest] = [shortest, longest].map(|length| Literal::usize_unsuffixed(*length));
     let varying = long.elements.map(|elements| varying(long, elements));
     let Varying { constants, count } = varying.unwrap_or_default();
-    let reads = fields.iter().map(read);
+    let (on_model, reads) = (on_model(fields), fields.iter().map(read));
     let values = quote!(Self { #(#reads),* });
     let decode = if count.is_empty() { values } else { quote!({ #count #values }) };
     let mut writes: Vec<_> = fields.iter().map(write).collect();
@@ -125,6 +125,7 @@ fn layout(long: &Long) -> TokenStream {
             #constants
             const DECODE: fn(&[u8]) -> Self = |data| #decode;
             const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| #encode;
+            #on_model
         }
     }
 }
@@ -181,6 +182,19 @@ fn read(Field { signal, row, run, .. }: &Field) -> TokenStream {
     quote!(#name: Self::#constant.#value)
 }
 
+/// Emits how values are left out that a device model does not have.
+fn on_model(fields: &[Field]) -> Option<TokenStream> {
+    let optional = fields.iter().filter(|field| field.signal.is_of_some_models && field.signal.member.is_optional);
+    let cases = optional.map(|Field { signal, row, .. }| {
+        let (constant, name) = (&signal.constant, &signal.member.name);
+        let hide = if row.is_some() { quote!(hide_all) } else { quote!(hide) };
+        quote!(Self::#constant.#hide(&mut self.#name, data, model);)
+    });
+    let cases: Vec<_> = cases.collect();
+    (!cases.is_empty())
+        .then(|| quote!(fn on_model(mut self, data: &[u8], model: Option<u8>) -> Self { #(#cases)* self }))
+}
+
 /// Emits how a field is written.
 fn write(Field { signal, row, run, .. }: &Field) -> TokenStream {
     let (constant, Member { name, put, is_at_end, .. }) = (&signal.constant, &signal.member);
@@ -203,7 +217,14 @@ fn end(Long { fields, shortest, lengths, .. }: &Long) -> Option<TokenStream> {
             let (name, index) = (&fields[*field].signal.member.name, index.map(Literal::usize_unsuffixed).into_iter());
             quote!(message.#name #([#index])*)
         });
-        quote!(if #(#members.is_some())||* { payload.end_after(#bytes); })
+        let mut of_some: Vec<_> = added.iter().map(|(field, _)| *field).collect();
+        of_some.dedup();
+        let of_some = of_some.into_iter().map(|field| &fields[field]).filter(|field| field.signal.is_of_some_models);
+        let reaches = of_some.map(|Field { signal, run, .. }| {
+            let (constant, known) = (&signal.constant, if run.is_some() { quote!(byte) } else { quote!(signal) });
+            quote!(|| payload.reaches(Self::#constant.#known()))
+        });
+        quote!(if #(#members.is_some())||* #(#reaches)* { payload.end_after(#bytes); })
     });
     let shortest = Literal::usize_unsuffixed(*shortest);
     (!lengths.is_empty()).then(|| quote!(payload.end_after(#shortest); #(#cases)*))

@@ -220,6 +220,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         let data = data.get(..announced.unwrap_or_else(|| bytes_with::<L>(count))).unwrap_or(data);
         let is_right = announced.is_none_or(has_length::<L>);
         let values = if is_right && buffer.missing(expected).next().is_none() { L::decode(data) } else { None };
+        let values = values.map(|values| values.on_model(data, self.model));
         match values {
             Some(values) => {
                 let is_told = count.is_some() || announced.is_some() || open.is_ended;

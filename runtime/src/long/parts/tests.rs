@@ -134,6 +134,11 @@ impl LongLayout for Cells {
         Self::CYCLES.write(message.cycles, payload, Signal::put)?;
         Self::VOLTAGE.write_some(&message.voltage, payload, Signal::put)
     };
+
+    /// Model 7 has no cycles, but 0 in their place.
+    fn on_model(self, data: &[u8], model: Option<u8>) -> Self {
+        if model == Some(7) && data.len() >= Self::SHORTEST { Self { cycles: 0, ..self } } else { self }
+    }
 }
 
 impl Parted for Cells {
@@ -193,6 +198,14 @@ fn a_message_is_taken_apart_and_put_together() {
     assert_eq!(parts.iter().map(|part| part.data).collect::<Vec<_>>(), expected);
     assert_eq!(parts.iter().map(|part| part.part).collect::<Vec<_>>(), [1, 2, 3]);
     assert_eq!(fed(&mut Assembler::<_, 1>::new(9), &frames(2, &message)), [(2, Some(message), Vec::new())]);
+}
+
+#[test]
+fn a_message_has_what_the_device_model_of_the_assembler_has() {
+    let message = cells(&[10, 20, 30, 40, 50]);
+    let on = |model: u8| fed(&mut Assembler::<_, 1>::new(9).for_model(model), &frames(2, &message));
+    assert_eq!(on(7), [(2, Some(Cells { cycles: 0, ..message }), Vec::new())]);
+    assert_eq!(on(8), [(2, Some(message), Vec::new())]);
 }
 
 #[test]

@@ -36,6 +36,8 @@ pub struct Whole<T: Transport, M: Memory = <T as Transport>::Memory> {
     /// The frame, or one that only shows its identifier.
     frame: Frame,
     transfer: Option<<T::Standard as Standard<T>>::Transfer<M>>,
+    /// The number of the device model as whose the last frame is recognised, if one was chosen.
+    model: Option<u8>,
     transport: PhantomData<T>,
 }
 
@@ -46,19 +48,21 @@ impl<T: Transport, M: Memory> Whole<T, M> {
         frame: Frame,
         transfer: <T::Standard as Standard<T>>::Transfer<M>,
     ) -> Self {
-        Self { exchange, kind, frame, transfer: Some(transfer), transport: PhantomData }
+        Self { exchange, kind, frame, transfer: Some(transfer), model: None, transport: PhantomData }
     }
 
     /// Returns a message that one frame has room for.
     pub(super) const fn of_one((exchange, kind): (&'static Exchange, Kind), frame: Frame) -> Self {
-        Self { exchange, kind, frame, transfer: None, transport: PhantomData }
+        Self { exchange, kind, frame, transfer: None, model: None, transport: PhantomData }
     }
 
     /// Returns the values, if it is the message `L` and has as many data bytes as that can have. A kind
-    /// of frame without values has none, and neither has an error reply.
+    /// of frame without values has none, and neither has an error reply. Optional values are left out that the device
+    /// model of its last frame does not have, unless bits show them.
     pub fn values<L: Transferred<Transport = T>>(&self) -> Option<L> {
         let is_message = self.exchange.message() == L::MESSAGE;
-        if is_message && T::Standard::has_values::<L, M>(self) { L::decode(self.data()) } else { None }
+        let values = if is_message && T::Standard::has_values::<L, M>(self) { L::decode(self.data()) } else { None };
+        values.map(|values| values.on_model(self.data(), self.model))
     }
 
     /// Returns the frame, or one that shows the identifier.
@@ -127,7 +131,8 @@ impl<T: Transport, const N: usize, M: Memory> Assembler<T, N, M> {
 
     /// The same as [`receive`](Self::receive), for a frame that is recognised already.
     pub fn take(&mut self, received: &Received<T::Protocol>, now: u32) -> Event<T, M> {
-        self.sessions.take(received, now)
+        let event = self.sessions.take(received, now);
+        Event { whole: event.whole.map(|whole| Whole { model: received.model(), ..whole }), ..event }
     }
 
     /// Gives up a message whose sender has been silent for too long. Call this until it returns
