@@ -86,6 +86,7 @@ fn encode_parts(
         let (signals, selectors) = (counter.clone().into_iter().chain([number]).collect(), selectors.clone());
         let part = Content { signals, selectors, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
         let mut frame = encode_as(protocol, model, (message, &layout), &part)?;
+        frame.data.iter_mut().zip(layout.filled().to_be_bytes()).for_each(|(byte, bits)| *byte |= bits);
         long::put_data(parts, &data, &mut frame);
         frames.push(frame);
     }

@@ -4,7 +4,7 @@ use canspec_codegen::interpret::{Assembly, Content, decode, encode_long};
 use canspec_codegen::model::NoteRule;
 
 use super::assembled::{assembled, check};
-use super::{feature, frame, model, printed, values};
+use super::{feature, frame, model, printed, values, written};
 
 /// A battery's six cells in three parts of three words, without the cycles in the first two bytes.
 const FIRST: &str = "051#010201E8030A0000";
@@ -140,5 +140,34 @@ fn bits_between_elements_are_noted_and_come_back() {
     assert_eq!(whole.decoded.notes.iter().map(|note| note.rule).collect::<Vec<_>>(), [NoteRule::ReservedBit]);
     assert_eq!(whole.reserved, [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF0, 0, 0, 0x20, 0, 0, 0]);
     let made = encode_long(&parts, None, &Content::of_long(&parts, whole)).expect("what came can be sent");
+    assert_eq!(made.iter().map(printed).collect::<Vec<_>>(), frames);
+}
+
+/// Only half of the bytes of a frame are data.
+const HALF: &str = r#"
+canspec: 1
+protocol: half
+title: A battery
+document: {title: Made up, version: "1"}
+length: 8
+reserved: {send: 1}
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+addressing: {battery: {request: {sender: 0}, one: {sender: 1}}}
+access: {set: {request: {}, reply: {}, answers: {battery: one}}}
+messages:
+  cells:
+    section: "1"
+    match: {command: 3}
+    access: [set]
+    parts: {number: {bytes: 0}, first: 0, data: 1..3}
+    fields: {one: {bytes: 0..1}, other: {bytes: 2..4}}
+"#;
+
+#[test]
+fn bits_beside_the_data_of_a_part_come_back_as_they_are_sent() {
+    let (half, frames) = (written(HALF), ["006#00000100FFFFFFFF", "006#010001FFFFFFFFFF"]);
+    let (ended, _) = assembled(&half, &frames);
+    let [whole] = ended.as_slice() else { panic!("one message") };
+    let made = encode_long(&half, None, &Content::of_long(&half, whole)).expect("what came can be sent");
     assert_eq!(made.iter().map(printed).collect::<Vec<_>>(), frames);
 }
