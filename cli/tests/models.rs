@@ -122,6 +122,9 @@ fn what_another_model_alone_has_is_not_shown_however_many_frames_carry_it() {
 fn long_messages_come_back_with_their_lengths_though_a_field_is_hidden() {
     for model in ["A", "B"] {
         let (lines, _) = battery(&["decode", "--model", model, "--assemble", "--format", "jsonl", "-"], MESSAGES);
+        // Whole messages say all that their frames do.
+        let is_whole = |line: &&str| line.starts_with("{\"lines\"") || line.contains("\"message\":\"state\"");
+        let lines = lines.lines().filter(is_whole).collect::<Vec<_>>().join("\n");
         let (log, complaints) = battery(&["encode", "--model", model, "--from", "jsonl", "-"], &lines);
         let data =
             |text: &str| text.lines().map(|line| line.split(' ').next_back().map(str::to_owned)).collect::<Vec<_>>();

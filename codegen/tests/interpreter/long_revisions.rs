@@ -196,6 +196,8 @@ fn a_hidden_field_of_a_long_message_comes_back_as_its_blank_bits() {
         check("NEW", blank, (&["charge", "heating"], false));
         if spec != J1939 {
             check("OLD", short, (&["charge"], false));
+            // A battery says what it likes.
+            check("NEW", short, (&["charge"], false));
         }
     }
 }
