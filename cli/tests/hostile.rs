@@ -274,9 +274,17 @@ fn what_a_shell_has_open_may_be_a_spec_or_a_dbc_up_to_a_size() -> Result {
 #[cfg(unix)]
 fn decoded_lines_without_end_are_refused() -> Result {
     let shell = |call: &str| Command::new("sh").args(["-c", call, env!("CARGO_BIN_EXE_canspec")]).output();
-    let output = shell("\"$0\" encode --protocol infy --from jsonl /dev/zero")?;
-    assert_eq!(output.status.code(), Some(1));
-    assert_eq!(String::from_utf8(output.stderr)?, "canspec: /dev/zero: line 1 has no end after 256 MiB\n");
+    for (call, why) in [
+        ("\"$0\" encode --protocol infy --from jsonl /dev/zero", "/dev/zero: the file is binary"),
+        (
+            "tr '\\0' x </dev/zero | \"$0\" encode --protocol infy --from jsonl",
+            "<stdin>: line 1 has no end after 256 MiB",
+        ),
+    ] {
+        let output = shell(call)?;
+        assert_eq!(output.status.code(), Some(1), "{call}");
+        assert_eq!(String::from_utf8(output.stderr)?, format!("canspec: {why}\n"));
+    }
     Ok(())
 }
 
