@@ -67,7 +67,7 @@ fn converse(mut moment: impl FnMut(&Sixty, Option<&Frame>, u32)) {
             moment(&client, None, now);
             match client.poll(now) {
                 Step::Send { frame, .. } => {
-                    asked.push_back((now, Frame::copy(&frame).expect("a frame of eight bytes")))
+                    asked.push_back((now, Frame::copy(&frame).expect("a frame of eight bytes")));
                 }
                 Step::Wait(_) => break,
                 step => panic!("{step:?}"),

@@ -7,6 +7,7 @@ pub mod generated;
 pub mod hand;
 
 use std::collections::BTreeMap;
+use std::hint::black_box;
 
 use crate::Codec;
 use crate::frame::{self, Frame};
@@ -38,6 +39,7 @@ pub trait Infy: Codec<ByHand = Received> {
         work::decode_by_call::<Self>(),
         payload::<Self>(),
         work::request::<Self>(),
+        kept::<Self>(),
         reply::<Self>(),
         work::encode::<Self>(),
     ];
@@ -46,6 +48,12 @@ pub trait Infy: Codec<ByHand = Received> {
 
     /// Decodes payloads of one command, and takes their values.
     fn payloads(command: u8, payloads: &[[u8; 8]]);
+
+    /// Builds a request, and keeps it whole, or the reason for which it is refused, as far as the codec has them.
+    #[inline(always)]
+    fn keep(request: &Self::Request) {
+        black_box(&Self::request(request));
+    }
 
     /// Asks for a module's output, if the codec knows of replies.
     fn ask(target: Target, controller: u8) -> Option<Self::Asked>;
@@ -68,6 +76,12 @@ const fn payload<C: Infy>() -> Work {
         Prepared::new(count, move || payloads.iter().for_each(|(command, payloads)| C::payloads(*command, payloads)))
     };
     Work { name: "payload alone", prepare }
+}
+
+/// Builds requests, and keeps each whole or its error.
+const fn kept<C: Infy>() -> Work {
+    let prepare = |frames: &[Frame]| work::with_each!(work::requests::<C>(frames), |request| C::keep(request));
+    Work { name: "request that is kept", prepare }
 }
 
 /// Decodes the reply to a request out of the frames of several modules.

@@ -153,6 +153,7 @@ fn values<C: Codec>(frames: &[Frame]) -> Vec<C::Values> {
     known::<C>(frames).iter().map(|frame| C::to_values(&received::<C>(frame))).collect()
 }
 
-fn requests<C: Codec>(frames: &[Frame]) -> Vec<C::Request> {
+/// Returns the requests among frames.
+pub fn requests<C: Codec>(frames: &[Frame]) -> Vec<C::Request> {
     values::<C>(frames).iter().filter_map(C::to_request).collect()
 }

@@ -13,6 +13,33 @@ use crate::Codec;
 use crate::frame::Frame;
 use crate::work::each;
 
+/// Hands over the request of a message.
+macro_rules! built {
+    ($route:expr, $message:expr, $take:ident) => {
+        match $message {
+            Message::ReadTotalSystemOutput => $take(SystemOutput::read_total($route)),
+            Message::ReadTotalModuleCount => $take(ModuleCount::read_total($route)),
+            Message::ReadModuleOutput => $take(ModuleOutput::read($route)),
+            Message::ReadModuleStatus => $take(ModuleStatus::read($route)),
+            Message::ReadInputVoltage => $take(InputVoltage::read($route)),
+            Message::ReadTotalSystemOutputFixed => $take(SystemOutputFixed::read_total($route)),
+            Message::ReadModuleOutputFixed => $take(ModuleOutputFixed::read($route)),
+            Message::ReadModuleLimits => $take(ModuleLimits::read($route)),
+            Message::ReadBarcode => $take(Barcode::read($route)),
+            Message::ReadExternalVoltage => $take(ExternalVoltage::read($route)),
+            Message::SetWalkIn(message) => $take(message.set($route)),
+            Message::SetLed(message) => $take(message.set($route)),
+            Message::SetGroup(message) => $take(message.set($route)),
+            Message::SetSleep(message) => $take(message.set($route)),
+            Message::SwitchModules(message) => $take(message.set($route)),
+            Message::SetTotalOutput(message) => $take(message.set_total($route)),
+            Message::SetModuleOutput(message) => $take(message.set($route)),
+            Message::SetAddressMode(message) => $take(message.set($route)),
+            _ => unreachable!("replies are no requests"),
+        }
+    };
+}
+
 /// The codec that canspec generates.
 pub struct Generated;
 
@@ -67,6 +94,11 @@ impl Codec for Generated {
 
 impl Infy for Generated {
     type Asked = Request<ModuleOutput>;
+
+    #[inline(always)]
+    fn keep((route, message): &Self::Request) {
+        built!(*route, message, keep);
+    }
 
     fn payloads(command: u8, payloads: &[[u8; 8]]) {
         fn all<L: Layout>(payloads: &[[u8; 8]], variant: impl Fn(L) -> Message) {
@@ -143,31 +175,18 @@ fn take(message: &Message) {
 }
 
 #[inline(always)]
+fn frame<R>(request: Result<Request<R>, Error>) -> Result<canspec_runtime::Frame, Error> {
+    request.map(|request| *request.frame())
+}
+
+#[inline(always)]
+fn keep<R>(request: Result<Request<R>, Error>) {
+    take!(&request);
+}
+
+#[inline(always)]
 fn request(route: Route<Target>, message: &Message) -> Result<canspec_runtime::Frame, Error> {
-    fn frame<R>(request: Request<R>) -> canspec_runtime::Frame {
-        *request.frame()
-    }
-    match message {
-        Message::ReadTotalSystemOutput => SystemOutput::read_total(route).map(frame),
-        Message::ReadTotalModuleCount => ModuleCount::read_total(route).map(frame),
-        Message::ReadModuleOutput => ModuleOutput::read(route).map(frame),
-        Message::ReadModuleStatus => ModuleStatus::read(route).map(frame),
-        Message::ReadInputVoltage => InputVoltage::read(route).map(frame),
-        Message::ReadTotalSystemOutputFixed => SystemOutputFixed::read_total(route).map(frame),
-        Message::ReadModuleOutputFixed => ModuleOutputFixed::read(route).map(frame),
-        Message::ReadModuleLimits => ModuleLimits::read(route).map(frame),
-        Message::ReadBarcode => Barcode::read(route).map(frame),
-        Message::ReadExternalVoltage => ExternalVoltage::read(route).map(frame),
-        Message::SetWalkIn(message) => message.set(route).map(frame),
-        Message::SetLed(message) => message.set(route).map(frame),
-        Message::SetGroup(message) => message.set(route).map(frame),
-        Message::SetSleep(message) => message.set(route).map(frame),
-        Message::SwitchModules(message) => message.set(route).map(frame),
-        Message::SetTotalOutput(message) => message.set_total(route).map(frame),
-        Message::SetModuleOutput(message) => message.set(route).map(frame),
-        Message::SetAddressMode(message) => message.set(route).map(frame),
-        _ => unreachable!("replies are no requests"),
-    }
+    built!(route, message, frame)
 }
 
 /// Returns the values in the types of the codec by hand.
