@@ -16,7 +16,7 @@ ci:
     .ci/run
 
 # What takes too long for each change, and is run before an issue is closed.
-deep: (programs "200000") (random-specs "2000") sweep (seeds "10000")
+deep: (programs "200000") (random-specs "2000") sweep (seeds "1000")
     CANSPEC_DEEP=1 cargo test --package canspec-tests --test links
     cargo run --quiet --bin canspec-mutants -- --at-most 60
 
