@@ -6,6 +6,7 @@ use std::string::{String, ToString};
 use std::time::{Duration, Instant};
 use std::vec;
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
@@ -14,9 +15,10 @@ use crate::Frame;
 use crate::client::Bus;
 use crate::station::Driver;
 
-/// Returns an adapter, and the path of its port.
+/// Returns an adapter that does not block, and the path of its port.
 fn adapter() -> (File, String) {
     let adapter = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pty");
+    fcntl_setfl(&adapter, OFlags::NONBLOCK).expect("it is open");
     grantpt(&adapter).expect("it is ours");
     unlockpt(&adapter).expect("it is ours");
     let path = ptsname(&adapter, vec![]).expect("it has a port");
@@ -25,23 +27,32 @@ fn adapter() -> (File, String) {
 
 /// Tests what the adapter is told. The kernel may hand it over bit by bit.
 fn is_told(adapter: &mut File, expected: &str) {
-    let mut told = vec![0; expected.len()];
-    fcntl_setfl(&*adapter, OFlags::empty()).expect("it is open");
-    adapter.read_exact(&mut told).expect("it is open");
-    fcntl_setfl(&*adapter, OFlags::NONBLOCK).expect("it is open");
+    let (mut told, mut count) = (vec![0; expected.len()], 0);
+    while count < told.len() {
+        count += read(adapter, &mut told[count..]);
+    }
     assert_eq!(String::from_utf8_lossy(&told), expected);
     let more = adapter.read(&mut [0]).map_err(|error| error.kind());
     assert_eq!(more, Err(ErrorKind::WouldBlock), "it is told more");
 }
 
-/// Waits for the next frame, and returns it as a text.
+/// Reads what the adapter is told next, some seconds from now at most. Returns how many bytes it is.
+fn read(adapter: &mut File, bytes: &mut [u8]) -> usize {
+    let seconds = Timespec { tv_sec: 10, tv_nsec: 0 };
+    poll(&mut [PollFd::new(&*adapter, PollFlags::IN)], Some(&seconds)).expect("it is open");
+    adapter.read(bytes).expect("it is told something")
+}
+
+/// Waits for the next frame, some seconds at most, and returns it as a text.
 fn received(port: &mut Port) -> String {
-    loop {
-        if let Ok(Some(frame)) = port.receive() {
-            return frame.to_string();
+    let next = (0..20).find_map(|_| {
+        let frame = port.receive().ok().flatten();
+        if frame.is_none() {
+            port.wait(1000);
         }
-        port.wait(1000);
-    }
+        frame
+    });
+    next.expect("a frame comes").to_string()
 }
 
 fn frame() -> Frame {
@@ -116,30 +127,26 @@ fn a_line_that_the_port_takes_in_part_is_ended_before_the_next_one() {
     let mut port = Port::open(path, BitRate::Kbit500).expect("the pty is there");
     is_told(&mut adapter, "\rC\rS6\rO\r");
     let line = "T0284F0038AB000200160040FF\r";
-    let mut bytes = vec![0; 5];
-    let mut taken = 0;
+    let (mut bytes, mut taken) = (vec![], 0);
     // The pty takes some thousand bytes, of which five are read in each turn, so lines are cut at any place.
     for _ in 0..2000 {
         taken += usize::from(port.send(&frame()) == Ok(true));
         if taken > 100 && bytes.len() < 20_000 {
             let from = bytes.len();
             bytes.resize(from + 5, 0);
-            let count = adapter.read(&mut bytes[from..]).expect("there is something");
+            let count = read(&mut adapter, &mut bytes[from..]);
             bytes.truncate(from + count);
         }
     }
-    fcntl_setfl(&adapter, OFlags::NONBLOCK).expect("it is open");
-    while port.receive() == Ok(None) {
+    assert!((101..2000).contains(&taken), "{taken}");
+    while bytes.len() < line.len() * taken {
+        assert_eq!(port.receive(), Ok(None));
         let from = bytes.len();
         bytes.resize(from + 4096, 0);
-        let count = adapter.read(&mut bytes[from..]).unwrap_or_default();
+        let count = read(&mut adapter, &mut bytes[from..]);
         bytes.truncate(from + count);
-        if count == 0 {
-            break;
-        }
     }
-    assert!((101..2000).contains(&taken), "{taken}");
-    assert_eq!(String::from_utf8_lossy(&bytes[5..]), line.repeat(taken));
+    assert_eq!(String::from_utf8_lossy(&bytes), line.repeat(taken));
 }
 
 #[test]
